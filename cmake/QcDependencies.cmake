@@ -1,0 +1,16 @@
+# Packages of the distribution; docs/dependencies.md says why each one.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+pkg_check_modules(OPENBLAS REQUIRED IMPORTED_TARGET openblas)
+pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
+pkg_check_modules(POPT REQUIRED IMPORTED_TARGET popt)
+find_library(QC_LAPACKE lapacke REQUIRED)
+find_library(QC_AMD amd REQUIRED)
+find_library(QC_SUITESPARSECONFIG suitesparseconfig REQUIRED)
+find_path(QC_AMD_INCLUDE amd.h PATH_SUFFIXES suitesparse REQUIRED)
+if(QC_BUILD_TESTS)
+  pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
+  set(QC_CMOCKA PkgConfig::CMOCKA)
+endif()
+set(QC_PRIVATE_LIBRARIES ${QC_AMD} ${QC_SUITESPARSECONFIG} ${QC_LAPACKE} PkgConfig::OPENBLAS
+    PkgConfig::JANSSON Threads::Threads ${CMAKE_DL_LIBS} m)

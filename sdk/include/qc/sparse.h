@@ -1,0 +1,144 @@
+/* qc/sparse.h - sparse Cholesky factorisation of Hermitian (and real symmetric) positive definite
+ * matrices: analyse once, factorise often, modify in place, solve.
+ *
+ * This module stands alone: nothing of geometry. Matrices are borrowed compressed-column views of
+ * the UPPER triangle (row <= column), rows sorted and unique within a column, every diagonal entry
+ * present. The factor is P A P^T = L D L^H with unit lower triangular L and real positive D, stored
+ * by supernodes. Numbering in every call is the caller's; the permutation stays inside.
+ * Thread rule of the whole header: a qc_symbolic is immutable and may be shared; a qc_factor may be
+ * used by several threads at once as long as no call modifies it; a qc_ctx belongs to one thread. */
+#ifndef QC_SPARSE_H
+#define QC_SPARSE_H
+
+#include <qc/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Upper triangle of a Hermitian n x n matrix by columns. Views own nothing. colptr: n+1. */
+typedef struct qc_hermitian {
+    int32_t n;
+    const int64_t *colptr;
+    const int32_t *row;
+    const qc_complex *val; /* imaginary parts of the diagonal are ignored */
+} qc_hermitian;
+
+/* The same for a real symmetric matrix. */
+typedef struct qc_symmetric {
+    int32_t n;
+    const int64_t *colptr;
+    const int32_t *row;
+    const double *val;
+} qc_symmetric;
+
+typedef struct qc_symbolic qc_symbolic; /* permutation, elimination tree, supernodes; immutable      */
+typedef struct qc_factor qc_factor;     /* numeric factor; the one mutable object of the SDK         */
+
+enum { QC_ORDER_AMD = 0, QC_ORDER_NATURAL = 1, QC_ORDER_GIVEN = 2 };
+
+typedef struct qc_analyze_options {
+    uint32_t struct_size;
+    int32_t ordering;           /* QC_ORDER_...                                                    */
+    const int32_t *permutation; /* QC_ORDER_GIVEN: n entries, permutation[k] = row eliminated k-th   */
+} qc_analyze_options;
+#define QC_ANALYZE_OPTIONS_INIT { sizeof(qc_analyze_options), 0, NULL }
+
+typedef struct qc_symbolic_info {
+    uint32_t struct_size;
+    int32_t n, supernodes, largest_front;
+    int64_t nnz_l;  /* entries of L including the diagonal, without padding                         */
+    int64_t stored; /* entries stored, with the zeros of relaxed supernodes                         */
+    double flops;   /* multiply-add pairs counted as 2 real flops for the real case; x4 complex     */
+    int64_t bytes_complex, bytes_real; /* memory of a factor                                        */
+} qc_symbolic_info;
+
+/* Symbolic analysis of the pattern (values are not read; val may be NULL). options NULL = AMD.
+ * Errors: ARGUMENT (where = column whose rows are unsorted, out of range or without diagonal; or the
+ * bad permutation entry), NOMEM, CANCELLED. */
+QC_API qc_status qc_analyze(qc_ctx *ctx, const qc_hermitian *A, const qc_analyze_options *options,
+                            qc_symbolic **out);
+QC_API qc_status qc_analyze_real(qc_ctx *ctx, const qc_symmetric *A,
+                                 const qc_analyze_options *options, qc_symbolic **out);
+QC_API void qc_symbolic_free(qc_symbolic *S); /* factors keep what they need: may be freed first    */
+QC_API void qc_symbolic_get_info(const qc_symbolic *S, qc_symbolic_info *info);
+
+/* Numeric factorisation; A must have the pattern that was analysed (or a subset of it).
+ * Errors: NOT_POSDEF (where = pivot: D(j) <= n eps max|A|), ARGUMENT, NOMEM, CANCELLED. */
+QC_API qc_status qc_factorize(qc_ctx *ctx, const qc_symbolic *S, const qc_hermitian *A,
+                              qc_factor **out);
+QC_API qc_status qc_factorize_real(qc_ctx *ctx, const qc_symbolic *S, const qc_symmetric *A,
+                                   qc_factor **out);
+/* New values, same pattern, no allocation of the factor. On error F is unusable until a refactorise
+ * succeeds (solves then answer ARGUMENT). */
+QC_API qc_status qc_refactorize(qc_ctx *ctx, qc_factor *F, const qc_hermitian *A);
+QC_API qc_status qc_refactorize_real(qc_ctx *ctx, qc_factor *F, const qc_symmetric *A);
+QC_API void qc_factor_free(qc_factor *F);
+
+/* Solves A X = B in place. x: n x nrhs, column-major with leading dimension n. Several right-hand
+ * sides are blocked. The real functions need a real factor, the complex ones a complex factor
+ * (ARGUMENT otherwise). */
+QC_API qc_status qc_solve(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, qc_complex *x);
+QC_API qc_status qc_solve_real(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, double *x);
+
+/* Forward solve only: overwrites b with y = D^{-1/2} L^{-1} P b, so that b^H A^{-1} b = |y|^2 and
+ * B^H A^{-1} C = Y_B^H Y_C (thesis 6.2.1). y is in elimination order. */
+QC_API qc_status qc_solve_forward(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, qc_complex *x);
+QC_API qc_status qc_solve_forward_real(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, double *x);
+
+/* Forward solve of one sparse right-hand side with nb entries: only the supernodes on the paths to
+ * the root are visited. y: n, every entry is written. */
+QC_API qc_status qc_solve_forward_sparse(qc_ctx *ctx, const qc_factor *F, int32_t nb,
+                                         const int32_t *row, const qc_complex *b, qc_complex *y);
+
+/* Solve followed by `steps` rounds of iterative refinement with A. x enters as b, leaves as the
+ * solution; *residual (may be NULL) gets max|b - A x| / (max|A| max|x| + max|b|). */
+QC_API qc_status qc_solve_refined(qc_ctx *ctx, const qc_factor *F, const qc_hermitian *A,
+                                  int32_t steps, qc_complex *x, double *residual);
+
+/* A <- A + sigma w w^H, sigma = +1 or -1, w sparse with nw entries; the pattern of L is fixed: the
+ * rows of w must form a clique of A (ARGUMENT otherwise). On any error F is bit for bit as before.
+ * Errors: NOT_POSDEF (a downdate left the cone; where = pivot), ARGUMENT, NOMEM. */
+QC_API qc_status qc_updown(qc_ctx *ctx, qc_factor *F, int sigma, int32_t nw, const int32_t *row,
+                           const qc_complex *w);
+QC_API qc_status qc_updown_real(qc_ctx *ctx, qc_factor *F, int sigma, int32_t nw,
+                                const int32_t *row, const double *w);
+
+/* Matching flip (thesis 6.2.1): A <- A + D where D couples row k with the rows l and m only:
+ * D(k,l) += dl, D(k,m) += dm and the conjugates. Rank 2, one positive and one negative eigenvalue,
+ * applied as update before downdate. On any error F is bit for bit as before. Errors as qc_updown. */
+QC_API qc_status qc_flip(qc_ctx *ctx, qc_factor *F, int32_t k, int32_t l, qc_complex dl, int32_t m,
+                         qc_complex dm);
+
+/* log(det A) = sum log D. */
+QC_API double qc_factor_logdet(const qc_factor *F);
+/* Smallest and largest pivot: their ratio is a cheap lower bound of the condition number. */
+QC_API void qc_factor_pivots(const qc_factor *F, double *smallest, double *largest);
+
+/* --- closest vector in a lattice (thesis 6.3) --------------------------------------------------- */
+
+enum { QC_ROUND_DIRECT = 0, QC_ROUND_GREEDY = 1 };
+
+typedef struct qc_lattice_options {
+    uint32_t struct_size;
+    int32_t start;  /* QC_ROUND_DIRECT: nearest integers; QC_ROUND_GREEDY: fix one, re-solve (MIQ)   */
+    int32_t radius; /* 0..3: then change up to this many entries by +-1 while the energy falls       */
+} qc_lattice_options;
+#define QC_LATTICE_OPTIONS_INIT { sizeof(qc_lattice_options), QC_ROUND_GREEDY, 3 }
+
+typedef struct qc_lattice_result {
+    double energy;        /* 1/2 (z - t)^T P (z - t) of the result                                  */
+    double energy_direct; /* the same for nearest-integer rounding                                  */
+    int64_t moves, evaluations;
+} qc_lattice_result;
+
+/* Finds integers z (as doubles) with small 1/2 (z - t)^T P (z - t); P: n x n, real symmetric positive
+ * definite, column-major, full. Deterministic. Errors: NOT_POSDEF, ARGUMENT, NOMEM, CANCELLED. */
+QC_API qc_status qc_lattice_round(qc_ctx *ctx, int32_t n, const double *P, const double *t,
+                                  const qc_lattice_options *options, double *z,
+                                  qc_lattice_result *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
