@@ -1,0 +1,103 @@
+/* qc/pipeline.h - registry of stages, pipelines as data, runs.
+ *
+ * A pipeline is a list of steps. A step's input port takes the latest earlier output of the same type
+ * (counting the objects in the bag at the start as earliest) unless `in` names one as "step.port" or
+ * as the name of a bag object. Everything is checked before anything runs.
+ * Thread rule: registry, pipeline and bag belong to the thread of their context. */
+#ifndef QC_PIPELINE_H
+#define QC_PIPELINE_H
+
+#include <qc/stage.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* --- registry --------------------------------------------------------------------------------- */
+
+typedef struct qc_registry qc_registry;
+/* Holds all built-in stages. The registry must not outlive ctx. */
+QC_API qc_status qc_registry_create(qc_ctx *ctx, qc_registry **out);
+/* Plugins are closed here: free pipelines, bags and objects made by them first. NULL is fine. */
+QC_API void qc_registry_free(qc_registry *registry);
+/* Adds a stage of the host program; the table is borrowed. A stage with a known id replaces it.
+ * Errors: ABI (sizes), ARGUMENT (a table that makes no sense: the text says what). */
+QC_API qc_status qc_registry_add(qc_registry *registry, const qc_stage *stage);
+/* Loads a plugin library (never implicit). Errors: IO (not loadable), ABI (no qc_plugin_1, other
+ * version, refused by open), ARGUMENT (bad stage table). On error nothing stays loaded. */
+QC_API qc_status qc_registry_load(qc_registry *registry, const char *plugin_path);
+QC_API uint32_t qc_registry_count(const qc_registry *registry);
+/* Stages in order of registration; NULL past the end. The returned table has this header's layout
+ * whatever the plugin was built with. Borrowed. */
+QC_API const qc_stage *qc_registry_stage(const qc_registry *registry, uint32_t i);
+/* Port or parameter i of a stage from the registry, honouring the strides. */
+QC_API const qc_port *qc_stage_in(const qc_stage *stage, uint32_t i);
+QC_API const qc_port *qc_stage_out(const qc_stage *stage, uint32_t i);
+QC_API const qc_param *qc_stage_param(const qc_stage *stage, uint32_t i);
+/* By id; the prefix "qc." may be left out. NOT_FOUND offers the closest id. */
+QC_API qc_status qc_registry_find(qc_registry *registry, const char *id, const qc_stage **out);
+
+/* --- objects ---------------------------------------------------------------------------------- */
+
+typedef struct qc_bag qc_bag; /* named, typed, shared objects: what goes into and comes out of runs   */
+QC_API qc_status qc_bag_create(qc_ctx *ctx, qc_bag **out);
+QC_API void qc_bag_free(qc_bag *bag); /* releases its objects; NULL is fine                          */
+/* Adds a reference; a known name is replaced. object starts with a qc_object. */
+QC_API qc_status qc_bag_put(qc_bag *bag, const char *name, const void *object);
+/* Borrowed; NULL when absent. name: a name put, or "step.port" after a run. */
+QC_API const void *qc_bag_get(const qc_bag *bag, const char *name);
+/* The latest object of a type; NULL when absent. Borrowed. */
+QC_API const void *qc_bag_latest(const qc_bag *bag, const char *type);
+QC_API uint32_t qc_bag_count(const qc_bag *bag);
+QC_API const char *qc_bag_name(const qc_bag *bag, uint32_t i); /* in order of arrival               */
+
+/* --- pipelines -------------------------------------------------------------------------------- */
+
+typedef struct qc_pipeline qc_pipeline;
+QC_API qc_status qc_pipeline_create(qc_registry *registry, qc_pipeline **out); /* empty              */
+/* { "qc_pipeline": 1, "stages": [ { "stage": ID, "as": STEP, "params": {..}, "in": {PORT: NAME} } ] }
+ * "as" defaults to the id without its "qc." prefix. Unknown keys, ids, parameters, values are errors
+ * (INPUT for JSON syntax with the line in where; NOT_FOUND with the closest name; ARGUMENT with the
+ * range). */
+QC_API qc_status qc_pipeline_parse(qc_registry *registry, const char *json, qc_pipeline **out);
+QC_API void qc_pipeline_free(qc_pipeline *pipeline);
+/* Inserts a step before position `at` (at = count appends). step NULL = id without "qc.". ARGUMENT
+ * when the step name is taken. */
+QC_API qc_status qc_pipeline_insert(qc_pipeline *pipeline, uint32_t at, const char *step,
+                                    const char *stage_id);
+QC_API qc_status qc_pipeline_remove(qc_pipeline *pipeline, uint32_t at);
+/* Parameter from text: "true", "12", "0.5", an enum name, any text. Errors name the closest
+ * parameter or step, or the range. */
+QC_API qc_status qc_pipeline_set(qc_pipeline *pipeline, const char *step, const char *param,
+                                 const char *text);
+/* Wires an input port to "step.port" or a bag name; source NULL = back to the rule. */
+QC_API qc_status qc_pipeline_wire(qc_pipeline *pipeline, const char *step, const char *port,
+                                  const char *source);
+QC_API uint32_t qc_pipeline_count(const qc_pipeline *pipeline);
+QC_API const char *qc_pipeline_step_name(const qc_pipeline *pipeline, uint32_t i);
+QC_API const qc_stage *qc_pipeline_step_stage(const qc_pipeline *pipeline, uint32_t i);
+/* Current value as text (static until the next call on the pipeline); NULL = unknown. */
+QC_API const char *qc_pipeline_get(const qc_pipeline *pipeline, const char *step, const char *param);
+/* The whole pipeline as JSON with every parameter; the caller frees it with qc_text_free. */
+QC_API qc_status qc_pipeline_print(const qc_pipeline *pipeline, char **json);
+QC_API void qc_text_free(char *text);
+
+/* Ports, types and ranges, given the objects in io. WIRING names step, port and type. */
+QC_API qc_status qc_pipeline_check(const qc_pipeline *pipeline, const qc_bag *io);
+/* Checks, then runs all steps; outputs land in io as "step.port". On error io is as before. */
+QC_API qc_status qc_pipeline_run(qc_pipeline *pipeline, qc_bag *io);
+/* The same for steps first .. last-1; check looks at those steps only. Progress covers the range
+ * [lo, hi] of the context's current one. */
+QC_API qc_status qc_pipeline_run_range(qc_pipeline *pipeline, uint32_t first, uint32_t last,
+                                       qc_bag *io);
+/* Seconds a step took, summed over all runs of this pipeline so far. */
+QC_API double qc_pipeline_seconds(const qc_pipeline *pipeline, uint32_t i);
+
+/* One stage without registry and JSON. params NULL = defaults. Outputs land in io under their port
+ * names. */
+QC_API qc_status qc_stage_run(qc_ctx *ctx, const qc_stage *stage, const void *params, qc_bag *io);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
