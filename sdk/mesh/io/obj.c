@@ -1,0 +1,181 @@
+/* Wavefront OBJ: v, vt, f, l, and g/o/usemtl as group numbers; everything else is skipped. */
+#include "internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Names of groups, numbered from 1 in the order of appearance: an open hash over the text. */
+typedef struct group_names {
+    const char **name;
+    size_t *length;
+    int32_t *slot; /* hash table of numbers, 0 = empty                                              */
+    int64_t n, c_name, c_length;
+    size_t n_slots; /* a power of two, or 0                                                         */
+} group_names;
+
+static size_t hash_text(const char *p, size_t n) {
+    uint64_t h = UINT64_C(14695981039346656037);
+    for (size_t i = 0; i < n; i++) h = (h ^ (unsigned char)p[i]) * UINT64_C(1099511628211);
+    return (size_t)(h ^ (h >> 32));
+}
+
+static size_t group_slot(const group_names *g, const char *p, size_t n) {
+    size_t i = hash_text(p, n) & (g->n_slots - 1);
+    for (; g->slot[i]; i = (i + 1) & (g->n_slots - 1)) {
+        int32_t k = g->slot[i] - 1;
+        if (g->length[k] == n && memcmp(g->name[k], p, n) == 0) break;
+    }
+    return i;
+}
+
+static bool group_grow(qc_ctx *ctx, group_names *g) {
+    size_t n_slots = g->n_slots ? 2 * g->n_slots : 64;
+    int32_t *slot = QC__ZERO(ctx, int32_t, n_slots);
+    if (!slot) return false;
+    qc__free(g->slot);
+    g->slot = slot;
+    g->n_slots = n_slots;
+    for (int32_t k = 0; k < g->n; k++) slot[group_slot(g, g->name[k], g->length[k])] = k + 1;
+    return true;
+}
+
+/* Number of the group named by the statement [p, p+n); 0 when memory ran out. */
+static int32_t group_number(qc_ctx *ctx, group_names *g, const char *p, size_t n) {
+    if ((size_t)(2 * g->n) >= g->n_slots && !group_grow(ctx, g)) return 0;
+    size_t i = group_slot(g, p, n);
+    if (g->slot[i]) return g->slot[i];
+    if (!qc__reserve(ctx, (void **)&g->name, &g->c_name, g->n + 1, sizeof *g->name) ||
+        !qc__reserve(ctx, (void **)&g->length, &g->c_length, g->n + 1, sizeof *g->length))
+        return 0;
+    g->name[g->n] = p;
+    g->length[g->n++] = n;
+    return g->slot[i] = (int32_t)g->n;
+}
+
+static void group_free(group_names *g) {
+    qc__free(g->name);
+    qc__free(g->length);
+    qc__free(g->slot);
+}
+
+/* An index as written (1-based, or negative from the end) to 0-based; forward references are
+ * checked when the file has been read. */
+static qc_status resolve(qc__text *t, int64_t i, int64_t n, const char *what, int64_t *out) {
+    if (i == 0)
+        return qc__text_fail(t, t->line, "%s index 0; OBJ counts from 1, export the file again", what);
+    *out = i > 0 ? i - 1 : n + i;
+    if (*out < 0)
+        return qc__text_fail(t, t->line,
+                             "%s index %lld is out of range (%lld read so far); export the file again",
+                             what, (long long)i, (long long)n);
+    return QC_OK;
+}
+
+/* v, v/vt, v//vn or v/vt/vn; uv = -1 when absent. */
+static qc_status take_reference(qc__text *t, qc__soup *s, int64_t *vertex, int64_t *uv) {
+    char excerpt[QC__EXCERPT];
+    int64_t i;
+    *uv = -1;
+    if (!qc__take_int(t, &i))
+        return qc__text_fail(t, t->line, "'%s' is not a vertex index; export the file again",
+                             qc__excerpt(t, excerpt));
+    qc_status status = resolve(t, i, s->n_position / 3, "vertex", vertex);
+    for (int k = 0; k < 2 && status == QC_OK && t->p < t->end && *t->p == '/'; k++) {
+        t->p++;
+        if (!qc__take_int(t, &i)) continue;
+        if (k == 0) status = resolve(t, i, s->n_uv / 2, "texture", uv);
+    }
+    if (status == QC_OK && t->p < t->end && *t->p == '/')
+        return qc__text_fail(t, t->line, "a corner is not v, v/vt, v//vn or v/vt/vn near '%s'; "
+                                         "export the file again", qc__excerpt(t, excerpt));
+    return status;
+}
+
+static bool line_goes_on(qc__text *t) {
+    qc__skip_blanks(t);
+    return !qc__at_line_end(t) && *t->p != '#';
+}
+
+static qc_status read_face(qc__text *t, qc__soup *s, int32_t group) {
+    int64_t first = t->line, n = 0, vertex, uv;
+    if (!qc__soup_face(s, first, group)) return QC_ERR_NOMEM;
+    for (; line_goes_on(t); n++) {
+        qc_status status = take_reference(t, s, &vertex, &uv);
+        if (status != QC_OK) return status;
+        if (!qc__soup_corner(s, vertex, uv)) return QC_ERR_NOMEM;
+    }
+    if (n < 3)
+        return qc__text_fail(t, first, "a face has %lld corners, at least 3 are needed; remove that "
+                                       "face", (long long)n);
+    return QC_OK;
+}
+
+static qc_status read_polyline(qc__text *t, qc__soup *s) {
+    int64_t previous = -1, vertex, uv;
+    while (line_goes_on(t)) {
+        qc_status status = take_reference(t, s, &vertex, &uv);
+        if (status != QC_OK) return status;
+        if (previous >= 0 && !qc__soup_line(s, previous, vertex)) return QC_ERR_NOMEM;
+        previous = vertex;
+    }
+    return QC_OK;
+}
+
+static qc_status read_vertex(qc__text *t, qc__soup *s) {
+    double xyz[3];
+    qc_status status = qc__take_point(t, "vertex", s->n_position / 3 + 1, xyz);
+    if (status == QC_OK && !qc__soup_vertex(s, xyz)) status = QC_ERR_NOMEM;
+    return status;
+}
+
+static qc_status read_uv(qc__text *t, qc__soup *s) {
+    double uv[2] = {0, 0};
+    for (int k = 0; k < 2 && (k == 0 || line_goes_on(t)); k++) {
+        qc__skip_blanks(t);
+        if (!qc__take_double(t, &uv[k]) || !isfinite(uv[k]))
+            return qc__text_fail(t, t->line, "texture coordinate %lld is not a finite number; remove "
+                                             "the texture coordinates or export the file again",
+                                 (long long)(s->n_uv / 2 + 1));
+    }
+    return qc__soup_uv(s, uv[0], uv[1]) ? QC_OK : QC_ERR_NOMEM;
+}
+
+static qc_status read_group(qc__text *t, group_names *g, const char *statement, int32_t *group) {
+    const char *end = t->p;
+    while (end < t->end && !qc__is_end(*end)) end++;
+    *group = group_number(t->ctx, g, statement, (size_t)(end - statement));
+    return *group ? QC_OK : QC_ERR_NOMEM;
+}
+
+static qc_status read_statement(qc__text *t, qc__soup *s, group_names *g, int32_t *group) {
+    const char *word = t->p;
+    size_t n = qc__word_length(t);
+    t->p += n;
+    if (n == 1 && *word == 'v') return read_vertex(t, s);
+    if (n == 1 && *word == 'f') return read_face(t, s, *group);
+    if (n == 2 && memcmp(word, "vt", 2) == 0) return read_uv(t, s);
+    if (n == 2 && memcmp(word, "fo", 2) == 0) return read_face(t, s, *group); /* old name of f */
+    if (n == 1 && *word == 'l') return read_polyline(t, s);
+    if ((n == 1 && (*word == 'g' || *word == 'o')) || (n == 6 && memcmp(word, "usemtl", 6) == 0))
+        return read_group(t, g, word, group);
+    return QC_OK;
+}
+
+qc_status qc__read_obj(qc__text *t, qc__soup *s) {
+    group_names groups = {0};
+    int32_t group = 0;
+    qc_status status = QC_OK;
+    t->continued = true;
+    for (int64_t i = 0; status == QC_OK; i++) {
+        qc__skip_blanks(t);
+        if (t->p == t->end) break;
+        bool comment = *t->p == '#';
+        if (!comment && !qc__at_line_end(t)) status = read_statement(t, s, &groups, &group);
+        t->continued = !comment; /* a comment ends with its line                                    */
+        qc__skip_line(t);
+        t->continued = true;
+        if (status == QC_OK && i % 16384 == 0 && !qc__text_progress(t)) status = QC_ERR_CANCELLED;
+    }
+    group_free(&groups);
+    return status;
+}
