@@ -64,7 +64,7 @@ QC_API void qc_symbolic_free(qc_symbolic *S); /* factors keep what they need: ma
 QC_API void qc_symbolic_get_info(const qc_symbolic *S, qc_symbolic_info *info);
 
 /* Numeric factorisation; A must have the pattern that was analysed (or a subset of it).
- * Errors: NOT_POSDEF (where = pivot: D(j) <= n eps max|A|), ARGUMENT, NOMEM, CANCELLED. */
+ * Errors: NOT_POSDEF (where = pivot: D(j) <= n eps A(j,j)), ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_factorize(qc_ctx *ctx, const qc_symbolic *S, const qc_hermitian *A,
                               qc_factor **out);
 QC_API qc_status qc_factorize_real(qc_ctx *ctx, const qc_symbolic *S, const qc_symmetric *A,

@@ -1,0 +1,143 @@
+/* The data behind qc/sparse.h and the steps of the analysis. Not installed.
+ *
+ * Three numberings of rows occur: the caller's, `permuted` (elimination order) and `local` (position
+ * in the row list of one supernode). Values are doubles with `components` = 1 (real) or 2 (complex,
+ * interleaved) numbers per entry; offsets count entries. */
+#ifndef QC_SPARSE_INTERNAL_H
+#define QC_SPARSE_INTERNAL_H
+
+#include <qc/sparse.h>
+#include <stdatomic.h>
+#include "sdk/base/internal.h"
+
+/* Compressed columns without values. */
+typedef struct qc__pattern {
+    int32_t n;
+    const int64_t *colptr;
+    const int32_t *row;
+} qc__pattern;
+
+/* Supernodes [first, last] form complete subtrees: independent work for one thread. */
+typedef struct qc__task {
+    int32_t first, last;
+} qc__task;
+
+/* First the tasks [task, task_end) in parallel, then the supernodes top[top..top_end) in order. */
+typedef struct qc__step {
+    int32_t task, task_end, top, top_end;
+    double flops;
+} qc__step;
+
+/* Schedule of the multifrontal factorisation. Update matrices of supernodes inside a task live on
+ * the stack of the worker; those which cross a task boundary or belong to the top in one shared
+ * area. Both layouts are fixed here, so that nothing depends on the number of threads. */
+typedef struct qc__plan {
+    int32_t ntask, nstep;
+    qc__task *task;
+    qc__step *step;
+    int32_t *top;
+    int64_t *update; /* nsuper: offset of the update matrix in its area                             */
+    bool *shared;    /* nsuper: which area                                                          */
+    int64_t stack, area; /* entries of one worker's stack and of the shared area                    */
+    int64_t work; /* doubles which qc__front_factor needs at most                                   */
+    int32_t largest_front, largest_width;
+    bool uses_blas;
+    double flops;
+} qc__plan;
+
+struct qc_symbolic {
+    atomic_int references;
+    int32_t n, nsuper;
+    int32_t *perm, *inverse; /* perm[k] = caller's row eliminated k-th                              */
+    int32_t *super;          /* nsuper + 1: first column                                            */
+    int32_t *super_of;       /* n: supernode of a column                                            */
+    int32_t *parent;         /* nsuper: -1 for roots; children come before parents                  */
+    int32_t *child, *sibling; /* nsuper: first child, next sibling, ascending; -1 ends              */
+    int64_t *rowptr;         /* nsuper + 1 into rows                                                */
+    int32_t *rows;           /* permuted rows of a supernode, ascending, its own columns first      */
+    int32_t *relative;       /* parallel to rows: local row in the parent's list (own columns: -1)  */
+    int64_t *panel;          /* nsuper + 1: offset of the r x w column-major panel                  */
+    int64_t *a_colptr;       /* the analysed pattern of A, the caller's numbering                   */
+    int32_t *a_row;
+    int64_t *entry;          /* nsuper + 1 into from / to: entries of A by supernode                */
+    int64_t *from, *to;      /* position in A; offset in the panel, ~offset when conjugated         */
+    qc__plan plan;
+    int64_t nnz_l;
+    double flops;
+};
+
+struct qc_factor {
+    qc_symbolic *S;
+    int32_t components; /* 1 real, 2 complex                                                        */
+    bool usable;
+    double *values; /* panels: unit lower triangle, the strict upper part is undefined              */
+    double *D;      /* n pivots, permuted                                                           */
+    double *diagonal; /* n: diagonal of A, permuted: the scale of each pivot                        */
+    double *journal;  /* updown: old columns, for roll back; grows                                  */
+    int32_t *journal_column;
+    int64_t journal_size, journal_columns; /* capacities                                            */
+};
+
+#define QC__EPS 2.220446049250313e-16
+
+/* A pivot below this is rounding error: in backward-stable elimination the error of D(j) is at most
+ * of order n eps A(j,j). The bound is invariant under diagonal scaling. */
+static inline double qc__pivot_floor(int32_t n, double diagonal) {
+    return (double)n * QC__EPS * diagonal;
+}
+
+/* csc.c */
+qc_status qc__check_pattern(qc_ctx *ctx, qc__pattern A);
+/* Strictly upper triangle of P A P^T by columns (unsorted); *colptr, *row belong to the caller. */
+qc_status qc__permute_upper(qc_ctx *ctx, qc__pattern A, const int32_t *inverse, int64_t **colptr,
+                            int32_t **row);
+/* Rows become columns and ascend within each. */
+qc_status qc__transpose(qc_ctx *ctx, qc__pattern A, int64_t **colptr, int32_t **row);
+
+/* ordering.c: perm: n */
+qc_status qc__order(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *options, int32_t *perm);
+
+/* etree.c; upper: strictly upper triangle by columns; work: n */
+void qc__etree(qc__pattern upper, int32_t *parent, int32_t *work);
+/* post[k] = node visited k-th, children in ascending order; work: 3 n */
+void qc__postorder(int32_t n, const int32_t *parent, int32_t *post, int32_t *work);
+
+/* column_counts.c; lower: strictly lower triangle by columns, postordered; work: 4 n */
+void qc__column_counts(qc__pattern lower, const int32_t *parent, int32_t *count, int32_t *work);
+
+/* supernodes.c: fills nsuper, super, super_of, parent, child, sibling, rowptr, panel of S and changes
+ * S->perm, S->inverse to the final order. parent, count: of the columns, postordered. */
+qc_status qc__supernodes(qc_ctx *ctx, qc_symbolic *S, const int32_t *parent, const int32_t *count);
+
+/* plan.c */
+qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S);
+void qc__plan_free(qc__plan *plan);
+
+/* analyze.c */
+qc_symbolic *qc__symbolic_retain(const qc_symbolic *S);
+
+/* factor.c */
+qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t components, qc_factor **out);
+qc_status qc__factor_check(qc_ctx *ctx, const qc_factor *F, int32_t components, bool values);
+
+/* kernel.c: y_q -= sum_k X_k c[k * 4 + q] for four columns (q = 0..3), or one (stride 1). */
+void qc__subtract4(int64_t n, int64_t K, const double *X, int64_t ldx, const double *c, double *y,
+                   int64_t ldy);
+void qc__subtract1(int64_t n, int64_t K, const double *X, int64_t ldx, const double *c, double *y);
+
+/* front.c, front_real.c: partial LDL^H of one front in place. panel: r x w, U: m x m, m = r - w
+ * (lower triangle, updated), D: w out, floor: w. work: qc__front_work entries. Returns -1, or the
+ * local column whose pivot is not above its floor. */
+int32_t qc__front_factor(int32_t r, int32_t w, double *panel, double *U, double *D,
+                         const double *floor, double *work);
+int32_t qc__front_factor_real(int32_t r, int32_t w, double *panel, double *U, double *D,
+                              const double *floor, double *work);
+int64_t qc__front_work(int32_t r, int32_t w); /* doubles */
+bool qc__front_uses_blas(int32_t r, int32_t w);
+
+/* blas_threads.c: between begin and end OpenBLAS computes in the calling thread. Any thread; pairs
+ * may overlap, the host's setting comes back with the last end. */
+void qc__blas_begin(void);
+void qc__blas_end(void);
+
+#endif

@@ -1,0 +1,3 @@
+/* numeric.c for real matrices. */
+#define QC__REAL
+#include "sdk/sparse/numeric.c"
