@@ -1,0 +1,61 @@
+/* Working state of qc_mesh_repair: a triangle list which the steps edit one after the other.
+ *
+ * Vertices never move: a vertex stands where the input vertex source_vertex[v] stands. Steps before
+ * the pairing know only `triangle`; later ones also `twin` (numbers as in qc_mesh). */
+#ifndef QC_MESH_REPAIR_INTERNAL_H
+#define QC_MESH_REPAIR_INTERNAL_H
+
+#include "sdk/mesh/internal.h"
+
+typedef struct qc__repair {
+    qc_ctx *ctx;
+    const qc_polygon_mesh *soup;
+    qc_repair_report *report;
+    int32_t n_vertices, n_faces;
+    int32_t *triangle;      /* 3 n_faces; the first entry of a removed face is -1                     */
+    int32_t *source_face;   /* n_faces                                                              */
+    int32_t *source_vertex; /* n_vertices                                                           */
+    int32_t *twin;          /* 3 n_faces, -1 = boundary                                             */
+    uint8_t *merged;        /* per input vertex: it lives on as another one                          */
+    uint8_t *cut;           /* n_vertices: at the end of an edge which was cut open                  */
+} qc__repair;
+
+static inline const double *qc__repair_point(const qc__repair *r, int32_t v) {
+    return r->soup->position + 3 * (size_t)r->source_vertex[v];
+}
+
+/* Counts a change and keeps the first elements. */
+void qc__repair_note(qc__repair *r, int32_t kind, int32_t element);
+/* Drops the faces with keep[f] == 0; before the pairing. */
+void qc__repair_keep(qc__repair *r, const uint8_t *keep);
+/* "face 12 (line 40)": for messages. */
+#define QC__FACE_NAME 64
+const char *qc__repair_face_name(const qc__repair *r, int32_t face, char buffer[QC__FACE_NAME]);
+
+/* Halfedges grouped by their end points: group i is order[start[i]] .. order[start[i+1]-1], ascending
+ * in each group; vertex[h] is the vertex at corner h. Both arrays are freed by the caller. */
+typedef struct qc__edge_groups {
+    int32_t n;
+    int32_t *order, *start;
+} qc__edge_groups;
+qc_status qc__edge_groups_create(qc_ctx *ctx, int32_t n_vertices, int32_t n_faces,
+                                 const int32_t *vertex, qc__edge_groups *out);
+void qc__edge_groups_free(qc__edge_groups *g);
+
+/* Triangles of a polygon with corners point[0..n): fan when convex, ears otherwise; out gets 3 (n - 2)
+ * corner numbers. work: n entries; flat: 2 n. */
+void qc__triangulate_polygon(int32_t n, const double *point, int32_t *out, int32_t *work,
+                             double *flat);
+
+/* The steps, in the order in which they are made. */
+qc_status qc__repair_triangulate(qc__repair *r);
+qc_status qc__repair_weld(qc__repair *r);
+qc_status qc__repair_degenerate(qc__repair *r);
+qc_status qc__repair_duplicate(qc__repair *r);
+qc_status qc__repair_pair(qc__repair *r);
+qc_status qc__repair_orient(qc__repair *r);
+qc_status qc__repair_split(qc__repair *r);
+qc_status qc__repair_zero_area(qc__repair *r);
+qc_status qc__repair_finish(qc__repair *r, qc_mesh **mesh);
+
+#endif
