@@ -135,6 +135,21 @@ int32_t qc__front_factor_real(int32_t r, int32_t w, double *panel, double *U, do
 int64_t qc__front_work(int32_t r, int32_t w); /* doubles */
 bool qc__front_uses_blas(int32_t r, int32_t w);
 
+/* The closest-vector problem min 1/2 (z - t)^T P (z - t) while it is being solved. */
+typedef struct qc__lattice {
+    int32_t n;
+    const double *P, *t; /* n x n, n */
+    double *z, *g;       /* n: present integers; g = P (z - t) */
+    int64_t moves, evaluations;
+} qc__lattice;
+
+/* lattice.c: g from scratch; returns the energy. */
+double qc__lattice_gradient(qc__lattice *Q);
+/* lattice_greedy.c: overwrites z. inverse: P^{-1}, lower triangle, destroyed. */
+qc_status qc__lattice_greedy(qc_ctx *ctx, qc__lattice *Q, double *inverse);
+/* lattice_search.c: lowers the energy until no change of up to `radius` entries by +-1 does. */
+qc_status qc__lattice_search(qc_ctx *ctx, qc__lattice *Q, int32_t radius);
+
 /* blas_threads.c: between begin and end OpenBLAS computes in the calling thread. Any thread; pairs
  * may overlap, the host's setting comes back with the last end. */
 void qc__blas_begin(void);

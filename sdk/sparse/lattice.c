@@ -1,0 +1,99 @@
+/* Rounding to a lattice: integers z with small 1/2 (z - t)^T P (z - t) (thesis 6.3), from a start of
+ * nearest integers or of greedy fixing, improved by local search. */
+#include "sdk/sparse/internal.h"
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+double qc__lattice_gradient(qc__lattice *Q) {
+    const int64_t n = Q->n;
+    double energy = 0;
+    memset(Q->g, 0, (size_t)n * sizeof *Q->g);
+    for (int64_t j = 0; j < n; j++) {
+        const double d = Q->z[j] - Q->t[j];
+        for (int64_t i = 0; i < n; i++) Q->g[i] += Q->P[i + j * n] * d;
+    }
+    for (int64_t i = 0; i < n; i++) energy += 0.5 * Q->g[i] * (Q->z[i] - Q->t[i]);
+    return energy;
+}
+
+static qc_status check(qc_ctx *ctx, int32_t n, const double *P, const double *t,
+                       const qc_lattice_options *options, const double *z) {
+    if (n < 0 || (n > 0 && (!P || !t || !z)))
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "rounding needs n >= 0, P, t and z");
+    if (options->radius < 0 || options->radius > 3)
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "rounding radius %d is not in 0..3",
+                        (int)options->radius);
+    if (options->start != QC_ROUND_DIRECT && options->start != QC_ROUND_GREEDY)
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "unknown rounding start %d",
+                        (int)options->start);
+    for (int32_t i = 0; i < n; i++)
+        if (!isfinite(t[i]))
+            return qc__fail(ctx, QC_ERR_ARGUMENT, i, "rounding target %d is not finite", (int)i);
+    return QC_OK;
+}
+
+/* C <- Cholesky factor of P, then with `invert` P^{-1}; lower triangle. */
+static qc_status decompose(qc_ctx *ctx, int32_t n, const double *P, bool invert, double *C) {
+    memcpy(C, P, (size_t)n * (size_t)n * sizeof *C);
+    int32_t bad = -1;
+    qc__blas_begin();
+    const int32_t info = (int32_t)LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, C, n);
+    if (info > 0) bad = info - 1;
+    for (int64_t i = 0; i < n && bad < 0; i++)
+        if (!(C[i + i * n] * C[i + i * n] > qc__pivot_floor(n, P[i + i * n]))) bad = (int32_t)i;
+    if (bad < 0 && invert) LAPACKE_dpotri_work(LAPACK_COL_MAJOR, 'L', n, C, n);
+    qc__blas_end();
+    if (bad >= 0)
+        return qc__fail(ctx, QC_ERR_NOT_POSDEF, bad,
+                        "rounding matrix is not positive definite at row %d", (int)bad);
+    return QC_OK;
+}
+
+/* Q has z and g; C: n x n space */
+static qc_status round_lattice(qc_ctx *ctx, qc__lattice *Q, const qc_lattice_options *options,
+                               double *C, qc_lattice_result *result) {
+    const bool greedy = options->start == QC_ROUND_GREEDY;
+    if (!qc__progress(ctx, 0.0)) return QC_ERR_CANCELLED;
+    qc_status status = decompose(ctx, Q->n, Q->P, greedy, C);
+    if (status != QC_OK) return status;
+    for (int32_t i = 0; i < Q->n; i++) Q->z[i] = floor(Q->t[i] + 0.5);
+    const double direct = qc__lattice_gradient(Q);
+    if (greedy) {
+        const qc__range outer = qc__range_begin(ctx, NULL, 0.0, 0.5);
+        status = qc__lattice_greedy(ctx, Q, C);
+        qc__range_end(ctx, outer);
+    }
+    if (status == QC_OK) {
+        const qc__range outer = qc__range_begin(ctx, NULL, 0.5, 1.0);
+        status = qc__lattice_search(ctx, Q, options->radius);
+        qc__range_end(ctx, outer);
+    }
+    if (status == QC_OK)
+        *result = (qc_lattice_result){ qc__lattice_gradient(Q), direct, Q->moves, Q->evaluations };
+    return status;
+}
+
+qc_status qc_lattice_round(qc_ctx *ctx, int32_t n, const double *P, const double *t,
+                           const qc_lattice_options *options, double *z,
+                           qc_lattice_result *result) {
+    const qc_lattice_options defaults = QC_LATTICE_OPTIONS_INIT;
+    qc_lattice_result found = { 0, 0, 0, 0 };
+    if (!options) options = &defaults;
+    qc_status status = check(ctx, n, P, t, options, z);
+    if (status != QC_OK) return status;
+    double *C = QC__NEW(ctx, double, (size_t)n * (size_t)n);
+    double *vectors = QC__NEW(ctx, double, 2 * (size_t)n);
+    if (!C || !vectors) {
+        status = QC_ERR_NOMEM;
+    } else if (n > 0) {
+        qc__lattice Q = { n, P, t, vectors, vectors + n, 0, 0 };
+        status = round_lattice(ctx, &Q, options, C, &found);
+        if (status == QC_OK) memcpy(z, Q.z, (size_t)n * sizeof *z);
+    }
+    if (status == QC_OK && result) *result = found;
+    qc__free(C);
+    qc__free(vectors);
+    return status;
+}

@@ -1,0 +1,105 @@
+/* Every allocation fails once: no leak, no crash, outputs untouched, factors as before. */
+#include "support.h"
+
+typedef struct counter {
+    int64_t calls, fail_at, live;
+} counter;
+
+static void *counting_resize(void *user, void *p, size_t old_size, size_t new_size) {
+    counter *c = user;
+    (void)old_size;
+    if (new_size == 0) {
+        if (p) c->live--;
+        free(p);
+        return NULL;
+    }
+    if (++c->calls == c->fail_at) return NULL;
+    if (!p) c->live++;
+    void *q = realloc(p, new_size);
+    assert_non_null(q);
+    return q;
+}
+
+static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
+    const qc_hermitian A = hermitian(M);
+    qc_symbolic *S = NULL;
+    qc_factor *F = NULL;
+    int32_t row[2] = { M->row[M->colptr[5]], 5 };
+    const qc_complex w[2] = { { 0.1, 0.2 }, { 0.3, 0 } };
+    qc_complex *x = calloc((size_t)M->n * 12, sizeof *x);
+    x[3].re = 1;
+    qc_status status = qc_analyze(ctx, &A, NULL, &S);
+    assert_true((status == QC_OK) == (S != NULL));
+    if (status == QC_OK) status = qc_factorize(ctx, S, &A, &F);
+    assert_true((status == QC_OK) == (F != NULL));
+    qc_symbolic_free(S);
+    if (status == QC_OK) status = qc_refactorize(ctx, F, &A);
+    const uint64_t before = status == QC_OK ? fingerprint(F) : 0;
+    if (status == QC_OK) {
+        status = qc_updown(ctx, F, 1, 2, row, w);
+        if (status != QC_OK) assert_true(before == fingerprint(F));
+    }
+    if (status == QC_OK) status = qc_solve(ctx, F, 1, x);
+    if (status == QC_OK) status = qc_solve(ctx, F, 12, x);
+    if (status == QC_OK) status = qc_solve_forward_sparse(ctx, F, 2, row, w, x);
+    if (status == QC_OK) status = qc_solve_refined(ctx, F, &A, 1, x, NULL);
+    qc_factor_free(F);
+    free(x);
+    return status;
+}
+
+static qc_status run_lattice(qc_ctx *ctx, const test_matrix *M) {
+    (void)M;
+    double P[16] = { 4, 1, 0, 1, 1, 4, 1, 0, 0, 1, 4, 1, 1, 0, 1, 4 };
+    const double t[4] = { 0.4, 0.5, -1.5, 2.2 };
+    double z[4] = { 9, 9, 9, 9 };
+    const qc_status status = qc_lattice_round(ctx, 4, P, t, NULL, z, NULL);
+    if (status != QC_OK) assert_true(z[0] == 9 && z[3] == 9);
+    return status;
+}
+
+static void fail_every_allocation(qc_status run(qc_ctx *, const test_matrix *)) {
+    test_matrix M = make_matrix(GRID, 900, 0.5);
+    counter c = { 0, -1, 0 };
+    qc_ctx_options options = QC_CTX_OPTIONS_INIT;
+    options.resize = counting_resize;
+    options.user = &c;
+    options.threads = 2;
+    qc_ctx *ctx = NULL;
+    assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
+    assert_int_equal(run(ctx, &M), QC_OK); /* the context starts its threads */
+    const int64_t base = c.live;
+    for (int64_t at = 1;; at++) {
+        c.calls = 0;
+        c.fail_at = at;
+        const qc_status status = run(ctx, &M);
+        assert_int_equal(c.live, base);
+        if (c.calls < at) {
+            assert_int_equal(status, QC_OK);
+            break;
+        }
+        assert_int_equal(status, QC_ERR_NOMEM);
+        assert_int_equal(qc_ctx_error(ctx)->status, QC_ERR_NOMEM);
+    }
+    qc_ctx_free(ctx);
+    assert_int_equal(c.live, 0);
+    free_matrix(&M);
+}
+
+static void factor_survives_failing_allocations(void **state) {
+    (void)state;
+    fail_every_allocation(run_complex);
+}
+
+static void lattice_survives_failing_allocations(void **state) {
+    (void)state;
+    fail_every_allocation(run_lattice);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(factor_survives_failing_allocations),
+        cmocka_unit_test(lattice_survives_failing_allocations),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
