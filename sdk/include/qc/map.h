@@ -28,6 +28,13 @@ typedef struct qc_seamless_map {
     double curl_energy;          /* E_D                                                             */
 } qc_seamless_map;
 
+/* The Hodge step (thesis 4.1): scales the cross field by 1/length, removes its curl with the complex matrix L*,
+ * cuts the surface by the shortest cut graph based at the singularities and integrates. Errors: NOMEM,
+ * CANCELLED, ARGUMENT (matching and sizing of different meshes), FAILED (where = face: the factorisation or the
+ * integration broke down). */
+QC_API qc_status qc_seamless_map_create(qc_ctx *ctx, const qc_matching *matching,
+                                        const qc_sizing *sizing, qc_seamless_map **out);
+
 /* Parameters at corners; after rounding an integer-seamless map. */
 typedef struct qc_corner_map {
     qc_object object;
@@ -49,6 +56,27 @@ QC_API qc_status qc_corner_map_to_polygons(qc_ctx *ctx, const qc_corner_map *map
                                            qc_polygon_mesh **out);
 QC_API qc_status qc_corner_map_from_polygons(qc_ctx *ctx, const qc_polygon_mesh *soup,
                                              qc_corner_map **out);
+
+/* --- rounding (thesis 4.2, 6.3) ----------------------------------------------------------------- */
+
+enum {
+    QC_LATTICE_QUADS = 0,   /* cones on lattice points, translations any integers: only quads        */
+    QC_LATTICE_INTEGER = 1, /* translations integers, cones may fall on half-integers (4.2.2 a)      */
+    QC_LATTICE_EVEN = 2     /* translations even integers (4.2.2 b)                                  */
+};
+typedef struct qc_round_options {
+    uint32_t struct_size;
+    int32_t lattice;  /* QC_LATTICE_...                                                             */
+    int32_t start;    /* QC_ROUND_DIRECT or QC_ROUND_GREEDY                                         */
+    int32_t radius;   /* 0..3, see qc_lattice_options                                               */
+    double tolerance; /* of the number of quads when the sizing asks for one; 0 = 0.02               */
+} qc_round_options;
+#define QC_ROUND_OPTIONS_INIT { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02 }
+/* Rounds the periods to a lattice by the period matrix (Sigma trick, 6.3.2) and adds the harmonic map with
+ * the missing periods. When the sizing asks for a number of quads the map is rescaled and rounded again until
+ * its area meets it. Errors: NOMEM, CANCELLED, FAILED. */
+QC_API qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
+                              const qc_round_options *options, qc_corner_map **out);
 
 /* --- exact grid (ROBUST 2) ---------------------------------------------------------------------- */
 
