@@ -34,10 +34,16 @@ static bool same_place(const double *flat, int32_t a, int32_t b) {
     return flat[2 * a] == flat[2 * b] && flat[2 * a + 1] == flat[2 * b + 1];
 }
 
-/* Whether corner i of the ring 0..m-1 can be cut off. */
-static bool is_ear(const double *flat, const int32_t *ring, int32_t m, int32_t i) {
+static bool is_taken(const qc__polygon *p, int32_t a, int32_t b) {
+    return qc__edge_set_has(p->taken, p->vertex[a], p->vertex[b]);
+}
+
+/* Whether corner i of the ring of m corners can be cut off. */
+static bool is_ear(const qc__polygon *p, int32_t m, int32_t i) {
+    const double *flat = p->flat;
+    const int32_t *ring = p->ring;
     int32_t a = ring[(i + m - 1) % m], b = ring[i], c = ring[(i + 1) % m];
-    if (!(turn(flat, a, b, c) > 0)) return false;
+    if (!(turn(flat, a, b, c) > 0) || (m > 3 && is_taken(p, a, c))) return false;
     for (int32_t j = 0; j < m; j++) {
         int32_t v = ring[j];
         if (v == a || v == b || v == c || same_place(flat, v, a) || same_place(flat, v, b) ||
@@ -51,12 +57,14 @@ static bool is_ear(const double *flat, const int32_t *ring, int32_t m, int32_t i
 }
 
 /* The corner to cut next, from `begin` on; in a self-intersecting rest the sharpest left turn. */
-static int32_t find_ear(const double *flat, const int32_t *ring, int32_t m, int32_t begin) {
+static int32_t find_ear(const qc__polygon *p, int32_t m, int32_t begin) {
+    const double *flat = p->flat;
+    const int32_t *ring = p->ring;
     int32_t best = begin % m;
     double most = -INFINITY;
     for (int32_t k = 0; k < m; k++) {
         int32_t i = (begin + k) % m;
-        if (is_ear(flat, ring, m, i)) return i;
+        if (is_ear(p, m, i)) return i;
         double t = turn(flat, ring[(i + m - 1) % m], ring[i], ring[(i + 1) % m]);
         if (t > most) {
             most = t;
@@ -78,26 +86,42 @@ static double distance2(const double *p, const double *q) {
     return d;
 }
 
-void qc__triangulate_polygon(int32_t n, const double *point, int32_t *out, int32_t *work,
-                             double *flat) {
-    project(n, point, flat);
-    if (is_convex(n, flat)) {
-        int32_t s = n == 4 && distance2(point + 3, point + 9) < distance2(point, point + 6);
-        for (int32_t i = 0; i < n - 2; i++) {
-            out[3 * i] = s;
-            out[3 * i + 1] = i + 1 + s;
-            out[3 * i + 2] = (i + 2 + s) % n;
-        }
-        return;
+/* A fan around corner s; false when one of its diagonals is taken. */
+static bool fan(qc__polygon *p, int32_t s) {
+    int32_t n = p->n;
+    for (int32_t i = 2; i < n - 1; i++)
+        if (is_taken(p, s, (s + i) % n)) return false;
+    for (int32_t i = 0; i < n - 2; i++) {
+        int32_t *t = p->triangles + 3 * (size_t)i;
+        t[0] = s;
+        t[1] = (s + i + 1) % n;
+        t[2] = (s + i + 2) % n;
+        if (i > 0) qc__edge_set_add(p->taken, p->vertex[s], p->vertex[t[1]]);
     }
-    for (int32_t i = 0; i < n; i++) work[i] = i;
-    int32_t begin = 0;
-    for (int32_t m = n; m > 2; m--) {
-        int32_t i = find_ear(flat, work, m, begin);
-        *out++ = work[(i + m - 1) % m];
-        *out++ = work[i];
-        *out++ = work[(i + 1) % m];
-        for (int32_t j = i; j + 1 < m; j++) work[j] = work[j + 1];
+    return true;
+}
+
+static void clip_ears(qc__polygon *p) {
+    int32_t *ring = p->ring, *out = p->triangles, begin = 0;
+    for (int32_t i = 0; i < p->n; i++) ring[i] = i;
+    for (int32_t m = p->n; m > 2; m--) {
+        int32_t i = find_ear(p, m, begin);
+        int32_t a = ring[(i + m - 1) % m], c = ring[(i + 1) % m];
+        *out++ = a;
+        *out++ = ring[i];
+        *out++ = c;
+        if (m > 3) qc__edge_set_add(p->taken, p->vertex[a], p->vertex[c]);
+        for (int32_t j = i; j + 1 < m; j++) ring[j] = ring[j + 1];
         begin = i + 1; /* a later corner: ears round the polygon, no fan                             */
     }
+}
+
+void qc__triangulate_polygon(qc__polygon *p) {
+    project(p->n, p->point, p->flat);
+    if (is_convex(p->n, p->flat)) {
+        const double *x = p->point;
+        int32_t s = p->n == 4 && distance2(x + 3, x + 9) < distance2(x, x + 6);
+        if (fan(p, s) || fan(p, s + 1)) return;
+    }
+    clip_ears(p);
 }

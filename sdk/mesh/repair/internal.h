@@ -42,10 +42,28 @@ qc_status qc__edge_groups_create(qc_ctx *ctx, int32_t n_vertices, int32_t n_face
                                  const int32_t *vertex, qc__edge_groups *out);
 void qc__edge_groups_free(qc__edge_groups *g);
 
-/* Triangles of a polygon with corners point[0..n): fan when convex, ears otherwise; out gets 3 (n - 2)
- * corner numbers. work: n entries; flat: 2 n. */
-void qc__triangulate_polygon(int32_t n, const double *point, int32_t *out, int32_t *work,
-                             double *flat);
+/* Undirected edges; room for `most` different ones. slot is freed by the caller. */
+typedef struct qc__edge_set {
+    uint64_t *slot; /* 0 = free                                                                     */
+    size_t mask;
+} qc__edge_set;
+qc_status qc__edge_set_create(qc_ctx *ctx, int64_t most, qc__edge_set *out);
+bool qc__edge_set_has(const qc__edge_set *s, int32_t a, int32_t b);
+void qc__edge_set_add(qc__edge_set *s, int32_t a, int32_t b);
+
+/* Triangles of a polygon, its corners being vertices vertex[0..n) at point[0..3n). Diagonals avoid the
+ * edges in `taken` where they can (two polygons may share two consecutive edges; the same diagonal in
+ * both would close a pocket) and are added to it. */
+typedef struct qc__polygon {
+    int32_t n;
+    int32_t *vertex;    /* n                                                                        */
+    double *point;      /* 3 n                                                                      */
+    int32_t *triangles; /* result: 3 (n - 2) corner numbers                                          */
+    int32_t *ring;      /* scratch, n                                                               */
+    double *flat;       /* scratch, 2 n                                                             */
+    qc__edge_set *taken;
+} qc__polygon;
+void qc__triangulate_polygon(qc__polygon *p);
 
 /* The steps, in the order in which they are made. */
 qc_status qc__repair_triangulate(qc__repair *r);
