@@ -48,10 +48,13 @@ QC_API qc_status qc_cover_shifts(qc_ctx *ctx, const qc_cover *cover, int8_t *shi
  * vertex_corner[v]. At branch points the walk does not close: the jump lies before vertex_corner. */
 QC_API qc_status qc_cover_corner_turns(qc_ctx *ctx, const qc_cover *cover, int8_t *corner_turn);
 
-/* Combing: turns face_turn[t] in 0..3 such that all faces of a component joined by edges with cut[e] == 0
- * (cut NULL = no cuts) agree when the gauge of face t is turned by face_turn[t] (new value = i^{turn}
- * old value): residual[e] (n_edges, may be NULL) = m_e + turn_t - turn_s mod 4 is 0 on the spanning
- * tree. trivial (n_components, may be NULL): 1 when it is 0 on every uncut interior edge. */
+/* Combing: turns face_turn[t] in 0..3 such that faces joined by edges with cut[e] == 0 (cut NULL = no
+ * cuts) agree when values in face t are multiplied by i^{face_turn[t]} (a cross x by i^{-face_turn[t]}).
+ * residual[e] (n_edges, may be NULL) in 0..3 is the matching of the new gauge,
+ *     residual = m_e + turn_s - turn_t mod 4,   f'_t = i^{-residual} f'_s + tau;
+ * it is 0 on the spanning tree (breadth first from the lowest face of each patch, turn 0 there) and on the
+ * boundary. trivial (n_components, may be NULL): 1 when it is 0 on every uncut interior edge: with a cut
+ * which opens every component to a disk this holds always. */
 QC_API qc_status qc_cover_comb(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cut,
                                int8_t *face_turn, int8_t *residual, uint8_t *trivial);
 
@@ -59,14 +62,21 @@ typedef struct qc_cover_info {
     int32_t odd, even;       /* branch points by parity of their shift                              */
     int32_t components;      /* of the covering                                                     */
     int32_t vertices, edges, faces, euler;
-    int32_t lemma_genus;     /* sum of genera by Lemma 3.5 (closed, connected mesh); -1 otherwise    */
-    int32_t symmetric_loops; /* (4.1): 4 g + 2 (even + odd) - 4; -1 when not applicable              */
+    /* Closed connected mesh: the sum of genera by Riemann and Hurwitz, components - euler / 2 with euler
+     * = 4 chi - 2 even - 3 odd; 4 g + even + 3/2 odd - 3 for a connected covering (Lemma 3.5, where
+     * 1/2 even is misprinted). -1 otherwise.                                                        */
+    int32_t lemma_genus;
+    int32_t symmetric_loops; /* (4.1): 4 g + 2 (even + odd) - 4; -1 without branch points or when the
+                                mesh is not closed and connected                                    */
 } qc_cover_info;
 /* Counted from the view, without building the covering. */
 QC_API qc_status qc_cover_get_info(qc_ctx *ctx, const qc_cover *cover, qc_cover_info *info);
 
-/* The covering as a mesh of its own: face 4 t + l lies on layer l above face t. *vertex_below (may be
- * NULL) has one entry per vertex of the result; free it with qc_cover_free_array. */
+/* The covering as a mesh of its own: face 4 t + l lies on layer l above face t, corners and halfedges keep
+ * their place in the face. Vertices are ordered by the vertex below; source_vertex and source_face of the
+ * result are numbers of cover->mesh. Four edges may join the same two branch points: use twins, never end
+ * points, to walk. *vertex_below (may be NULL) = source_vertex as an array of the caller's; free it with
+ * qc_cover_free_array. Errors: ARGUMENT (more than 2^31 / 12 faces), NOMEM. */
 QC_API qc_status qc_cover_mesh(qc_ctx *ctx, const qc_cover *cover, qc_mesh **out,
                                int32_t **vertex_below);
 QC_API void qc_cover_free_array(void *array);
@@ -74,12 +84,13 @@ QC_API void qc_cover_free_array(void *array);
  * the covering. */
 QC_API qc_status qc_cover_deck(qc_ctx *ctx, const qc_cover *cover, int32_t k, int32_t *deck);
 
-/* Lifts a path of faces (face_path[i] and [i+1] share an edge; the first shared one is crossed) which
- * starts on `layer`: layers (n). ARGUMENT with where = i when two faces share no edge. */
+/* Lifts a path of faces (face_path[i] and [i+1] share an edge; their lowest shared halfedge is crossed)
+ * which starts on `layer`: layers (n). ARGUMENT with where = i when face_path[i] is no face or shares no
+ * edge with the next one. */
 QC_API qc_status qc_cover_lift(qc_ctx *ctx, const qc_cover *cover, int32_t n,
                                const int32_t *face_path, int32_t layer, int8_t *layers);
 /* The symmetric loop of a path (thesis 4.2): the lift on `layer` followed by the reversed lift on layer +
- * 2; 2 n entries each in faces and layers. */
+ * 2; 2 n entries each in faces and layers. Shifted by two layers it is its own reversal. */
 QC_API qc_status qc_cover_symmetric_loop(qc_ctx *ctx, const qc_cover *cover, int32_t n,
                                          const int32_t *face_path, int32_t layer, int32_t *faces,
                                          int8_t *layers);

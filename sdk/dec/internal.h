@@ -1,0 +1,73 @@
+/* Kernels of sdk/dec shared between its files, and complex arithmetic on qc_complex. */
+#ifndef QC_DEC_INTERNAL_H
+#define QC_DEC_INTERNAL_H
+
+#include <complex.h>
+
+#include <qc/dec.h>
+
+#include "sdk/base/internal.h"
+
+static inline double _Complex qc__load(qc_complex a) {
+    const union {
+        qc_complex pair;
+        double _Complex number;
+    } u = {a};
+    return u.number;
+}
+static inline qc_complex qc__store(double _Complex a) {
+    const qc_complex z = {creal(a), cimag(a)};
+    return z;
+}
+static inline qc_complex qc__sub(qc_complex a, qc_complex b) {
+    const qc_complex z = {a.re - b.re, a.im - b.im};
+    return z;
+}
+static inline qc_complex qc__add(qc_complex a, qc_complex b) {
+    const qc_complex z = {a.re + b.re, a.im + b.im};
+    return z;
+}
+static inline qc_complex qc__scale(double s, qc_complex a) {
+    const qc_complex z = {s * a.re, s * a.im};
+    return z;
+}
+
+/* The midpoint value v_e, which lives in the gauge of s, is i^{turn} v_e in the face of h. */
+static inline int32_t qc__edge_turn(const qc_cover *cover, int32_t h) {
+    const qc_mesh *m = cover->mesh;
+    return m->edge_halfedge[2 * m->halfedge_edge[h]] == h ? 0 : qc_cover_turn(cover, h);
+}
+
+/* Cotangents of a mesh, 3 n_faces; NULL when memory runs out. */
+double *qc__cotangents(qc_ctx *ctx, const qc_mesh *mesh);
+
+/* z = grad f for corner values f_c = i^{corner_turn[c]} F_v. */
+void qc__gradient(const qc_mesh *mesh, const int8_t *corner_turn, const qc_complex *F,
+                  qc_complex *z);
+/* out = z - J grad v (in place allowed) for the non-conforming v. */
+void qc__subtract_rotation(const qc_cover *cover, const double *cotangent, const qc_complex *v,
+                           const qc_complex *z, qc_complex *out);
+/* Weak divergence with the gauge given; zero where branch[v] != 0 (NULL = nowhere). */
+void qc__divergence(const qc_mesh *mesh, const double *cotangent, const int8_t *corner_turn,
+                    const int8_t *branch, const qc_complex *z, qc_complex *div);
+/* out = J z; in place allowed. */
+void qc__rotate(const qc_mesh *mesh, const double *cotangent, const qc_complex *z, qc_complex *out);
+
+/* A stiffness matrix with its factor. The factor is that of D A D, D a diagonal of powers of two which
+ * brings every diagonal entry of A to [1/2, 2): slivers do not hide small pivots, and nothing is
+ * rounded. */
+typedef struct qc__system {
+    const qc_stiffness *stiffness; /* borrowed                                                     */
+    int32_t n_elements;            /* length of stiffness->unknown                                 */
+    double *scale;                 /* D                                                            */
+    qc_complex *val;               /* of D A D                                                     */
+    qc_factor *factor;             /* NULL when there is no unknown                                */
+} qc__system;
+/* `element` names the unknowns ("edge", "vertex") in errors: NOT_POSDEF with where = element. */
+qc_status qc__system_create(qc_ctx *ctx, const qc_stiffness *stiffness, int32_t n_elements,
+                            const char *element, qc__system *out);
+void qc__system_free(qc__system *system);
+/* Overwrites the right-hand side x (n_elements) by the solution, zero where a value is fixed. */
+qc_status qc__system_solve(qc_ctx *ctx, const qc__system *system, qc_complex *x);
+
+#endif
