@@ -45,22 +45,33 @@ enum { QC_CURVATURE_HILDEBRANDT_POLTHIER = 0, QC_CURVATURE_COHEN_STEINER_MORVAN 
  * the mesh (Cohen-Steiner and Morvan only). */
 QC_API qc_status qc_field_curvature(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator,
                                     double radius, qc_complex *x, double *kappa);
-/* Stability weights (5.2), made dimensionless by the mean edge length; weight: n_faces. */
+/* Stability weights (5.2): |k1 - k2| l exp(-1/2 sum |theta|) with l = sqrt(mesh->area) / 100, the edge of one
+ * quad of 10000: pure numbers which depend on the surface, not on its scale or resolution. weight: n_faces;
+ * kappa: 2 n_faces. */
 QC_API qc_status qc_field_stability(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *x,
                                     const double *kappa, double *weight);
-/* Keeps the `fraction` most stable faces of each component (flags in trusted) and extends their directions
- * to the others breadth first by parallel transport (thesis 5.1.2). x is changed in place. */
+/* Turns the cross of each face with a feature edge along that edge, trusts it and raises its weight to
+ * `strength` (soft alignment to creases and boundaries). edge: n_edges flags as in qc_features, nonzero =
+ * feature; NULL = the boundary. x, weight, trusted (n_faces each) are changed in place at these faces. */
+QC_API qc_status qc_field_align(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
+                                double strength, qc_complex *x, double *weight, uint8_t *trusted);
+/* Keeps the most stable faces of each component which make up `fraction` of its area, and those already
+ * flagged in trusted (in and out: clear it first), and extends their directions to the other faces breadth
+ * first by parallel transport (thesis 5.1.2). Faces of weight < 1e-6 are flat and never kept; a component
+ * without any kept face starts from its boundary edges, else from its first edge. x is changed in place. */
 QC_API qc_status qc_field_extend(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                  double fraction, qc_complex *x, uint8_t *trusted);
 /* Smoothing (5.3), (5.4): rotates each cross by the minimiser of lambda E_S + (1 - lambda) E_A for the
- * matching of x, then re-matches; `rounds` times or until the matching no longer changes. weight and
- * trusted may be NULL (then lambda acts as 1). x in place. */
+ * matching of x, then re-matches; `rounds` times or until the matching no longer changes. E_A pulls the
+ * trusted faces towards the x given, with w_t A_t / l^2 (l as in qc_field_stability). weight NULL = 1; trusted
+ * NULL = all faces; both NULL: lambda acts as 1. x in place. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                  const uint8_t *trusted, double lambda, int32_t rounds,
                                  qc_complex *x);
-/* Smoothest field: eigenvector of the smallest eigenvalue of the connection Laplacian on fourth powers x^4 by
- * inverse iteration on its factor. With weight/trusted and alignment > 0: minimiser of the smoothness plus
- * alignment to the trusted directions in x (in: guide, out: field). */
+/* Smoothest field: in each component the eigenvector of the smallest eigenvalue of the connection Laplacian
+ * on fourth powers x^4, by inverse iteration on its factor. With alignment > 0 and weight or trusted given:
+ * minimiser of E_S(x^4) + alignment sum w_t A_t / l^2 |x^4 - guide^4|^2 over the trusted faces (in: guide,
+ * out: field); components without any trusted face get the eigenvector. Errors as above. */
 QC_API qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                     const uint8_t *trusted, double alignment, qc_complex *x);
 
@@ -79,10 +90,11 @@ typedef struct qc_matching {
 QC_API qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
                                     qc_matching **out);
 
-/* Directional's .rawfield (`N F`, then N vectors a face) and .rosy (F, N, one vector a face), recognised by
- * content. Vectors are projected to the face. Errors: IO; INPUT with the line or face (wrong counts, N not
- * 4 (or 2, 1 for .rosy with N = 4), zero or non-finite vector). field->mesh = mesh, whose source_face maps
- * its faces to those of the file when present. */
+/* Directional's .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a face), recognised
+ * by content; N = 4 (N = 1 or 2 also make a cross). Vectors are projected to the face; four of them are
+ * averaged as fourth powers. F and the order are those of the file the mesh came from: faces are looked up
+ * through mesh->source_face when present. path "-" = stdin. Errors: IO; INPUT with where = line: wrong counts,
+ * other N, not a number, a vector which is zero in its face. */
 QC_API qc_status qc_face_field_read(qc_ctx *ctx, const qc_mesh *mesh, const char *path,
                                     qc_face_field **out);
 /* Writes .rosy when the path ends so, else .rawfield, in the mesh's own face order, through a temporary. */

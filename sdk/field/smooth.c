@@ -1,0 +1,186 @@
+/* Smoothing of a cross field by rotations alpha_t (thesis 5.2.1): minimises
+ *     lambda sum_e omega_e (theta_e - alpha_s + alpha_t)^2
+ *       + (1 - lambda) sum_t w_t A_t / l^2 (alpha_t + d_t)^2                                        (5.3)
+ * where d_t is the angle by which the face already differs from its guide. omega is a pure number, and so is
+ * w_t A_t / l^2 with l of stability.c: lambda means the same at every scale and resolution. Features
+ * narrower than about l sqrt(2 lambda / ((1 - lambda) w)) are smoothed away.
+ *
+ * The matrix (5.4) does not depend on the matching, so its factor serves all rounds: solve, rotate, match
+ * again. Each step lowers the energy (a new matching makes |theta| smaller, and a turn of d by pi/2 makes
+ * |d| smaller), so the rounds end. */
+#include "internal.h"
+
+#include <string.h>
+
+/* Below this lambda the smoothing term only fills the gaps between kept directions. */
+#define LAMBDA_MIN 1e-6
+/* A component whose alignment is weaker than this part of its smoothing term is solved without alignment,
+ * one face fixed: otherwise the matrix is singular to working precision. */
+#define ALIGNMENT_MIN 1e-9
+
+typedef struct smoother {
+    const qc_mesh *mesh;
+    qc__connection c;
+    qc__face_pattern pattern;
+    double lambda;
+    double *pull;   /* n_faces: (1 - lambda) w A / l^2                                        */
+    int32_t *fixed; /* n_components: face with alpha = 0, -1 = none                           */
+    double *value;  /* of the matrix                                                          */
+    double *theta, *alpha;
+    qc_complex *guide; /* n_faces: x at the beginning                                          */
+    qc_factor *factor;
+} smoother;
+
+static void smoother_free(smoother *s) {
+    qc__connection_free(&s->c);
+    qc__face_pattern_free(&s->pattern);
+    qc__free(s->pull);
+    qc__free(s->fixed);
+    qc__free(s->value);
+    qc__free(s->theta);
+    qc__free(s->alpha);
+    qc__free(s->guide);
+    qc_factor_free(s->factor);
+}
+
+static bool is_fixed(const smoother *s, int32_t t) {
+    return s->fixed[s->mesh->face_component[t]] == t;
+}
+
+/* Weights of the alignment term and the faces which must be fixed for want of it. */
+static qc_status set_pull(qc_ctx *ctx, smoother *s, const double *weight, const uint8_t *trusted) {
+    const qc_mesh *mesh = s->mesh;
+    double l = qc__reference_length(mesh);
+    double *alignment = QC__ZERO(ctx, double, mesh->n_components);
+    double *smoothing = QC__ZERO(ctx, double, mesh->n_components);
+    qc_status status = alignment && smoothing ? QC_OK : QC_ERR_NOMEM;
+    if (!status) {
+        for (int32_t t = 0; t < mesh->n_faces; t++) {
+            bool aligned = (weight || trusted) && (!trusted || trusted[t]);
+            double w = aligned ? weight ? weight[t] : 1 : 0;
+            s->pull[t] = (1 - s->lambda) * w * s->c.area[t] / (l * l);
+            alignment[mesh->face_component[t]] += s->pull[t];
+        }
+        for (int32_t e = 0; e < mesh->n_edges; e++)
+            smoothing[mesh->face_component[mesh->edge_halfedge[2 * e] / 3]] +=
+                s->lambda * s->c.omega[e];
+        for (int32_t i = 0; i < mesh->n_components; i++) s->fixed[i] = -1;
+        for (int32_t t = 0; t < mesh->n_faces; t++) {
+            int32_t i = mesh->face_component[t];
+            if (alignment[i] > ALIGNMENT_MIN * smoothing[i]) continue;
+            s->pull[t] = 0;
+            if (s->fixed[i] < 0) s->fixed[i] = t;
+        }
+    }
+    qc__free(alignment);
+    qc__free(smoothing);
+    return status;
+}
+
+/* (5.4); a fixed face keeps its diagonal only. */
+static void fill_matrix(smoother *s) {
+    const qc_mesh *mesh = s->mesh;
+    const int64_t *colptr = s->pattern.colptr;
+    memset(s->value, 0, (size_t)colptr[mesh->n_faces] * sizeof *s->value);
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        s->value[colptr[t + 1] - 1] = is_fixed(s, t) ? s->lambda : s->pull[t];
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        if (s->pattern.entry[e] < 0) continue;
+        int32_t a = mesh->edge_halfedge[2 * e] / 3, b = mesh->edge_halfedge[2 * e + 1] / 3;
+        double w = s->lambda * s->c.omega[e];
+        s->value[colptr[a + 1] - 1] += w;
+        s->value[colptr[b + 1] - 1] += w;
+        if (!is_fixed(s, a) && !is_fixed(s, b)) s->value[s->pattern.entry[e]] -= w;
+    }
+}
+
+static qc_status factorise(qc_ctx *ctx, smoother *s) {
+    qc_symmetric A = {s->mesh->n_faces, s->pattern.colptr, s->pattern.row, s->value};
+    qc_symbolic *symbolic = NULL;
+    qc_status status = qc_analyze_real(ctx, &A, NULL, &symbolic);
+    if (!status) status = qc_factorize_real(ctx, symbolic, &A, &s->factor);
+    qc_symbolic_free(symbolic);
+    return status;
+}
+
+static qc_status prepare(qc_ctx *ctx, smoother *s, const double *weight, const uint8_t *trusted,
+                         const qc_complex *x) {
+    const qc_mesh *mesh = s->mesh;
+    qc_status status = qc__connection_create(ctx, mesh, &s->c);
+    if (!status) status = qc__face_pattern_create(ctx, mesh, &s->pattern);
+    if (status) return status;
+    s->pull = QC__NEW(ctx, double, mesh->n_faces);
+    s->fixed = QC__NEW(ctx, int32_t, mesh->n_components);
+    s->value = QC__NEW(ctx, double, s->pattern.colptr[mesh->n_faces]);
+    s->theta = QC__NEW(ctx, double, mesh->n_edges);
+    s->alpha = QC__NEW(ctx, double, mesh->n_faces);
+    s->guide = QC__NEW(ctx, qc_complex, mesh->n_faces);
+    if (!s->pull || !s->fixed || !s->value || !s->theta || !s->alpha || !s->guide)
+        return QC_ERR_NOMEM;
+    memcpy(s->guide, x, (size_t)mesh->n_faces * sizeof *x);
+    status = set_pull(ctx, s, weight, trusted);
+    if (status) return status;
+    fill_matrix(s);
+    return factorise(ctx, s);
+}
+
+/* Angle of cross x against its guide, modulo pi/2. */
+static double deviation(qc_complex x, qc_complex guide) {
+    return qc__arg(qc__fourth(qc__c(x) * conj(qc__c(guide)))) / 4;
+}
+
+static void fill_right_hand_side(smoother *s, const qc_complex *x) {
+    const qc_mesh *mesh = s->mesh;
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        s->alpha[t] = s->pull[t] > 0 ? -s->pull[t] * deviation(x[t], s->guide[t]) : 0;
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        if (s->pattern.entry[e] < 0) continue;
+        double b = s->lambda * s->c.omega[e] * s->theta[e];
+        s->alpha[mesh->edge_halfedge[2 * e] / 3] += b;
+        s->alpha[mesh->edge_halfedge[2 * e + 1] / 3] -= b;
+    }
+    for (int32_t i = 0; i < mesh->n_components; i++)
+        if (s->fixed[i] >= 0) s->alpha[s->fixed[i]] = 0;
+}
+
+/* One round; *changed: the straightest matching differs from the one solved for. */
+static qc_status smooth_round(qc_ctx *ctx, smoother *s, qc_complex *x, bool *changed) {
+    const qc_mesh *mesh = s->mesh;
+    fill_right_hand_side(s, x);
+    qc_status status = qc_solve_real(ctx, s->factor, 1, s->alpha);
+    if (status) return status;
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        x[t] = qc__z(qc__unit(qc__c(x[t]) * (cos(s->alpha[t]) + sin(s->alpha[t]) * I)));
+    *changed = false;
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        if (s->pattern.entry[e] < 0) continue;
+        double turned = s->theta[e] - s->alpha[mesh->edge_halfedge[2 * e] / 3] +
+                        s->alpha[mesh->edge_halfedge[2 * e + 1] / 3];
+        if (fabs(turned) > QC__PI / 4 * (1 + 1e-9)) *changed = true;
+    }
+    qc__field_match(ctx, mesh, s->c.rho, x, NULL, s->theta);
+    return QC_OK;
+}
+
+qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
+                          const uint8_t *trusted, double lambda, int32_t rounds, qc_complex *x) {
+    if (!(lambda >= 0 && lambda <= 1))
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "lambda = %g is not in [0, 1]", lambda);
+    if (rounds < 1) return QC_OK;
+    smoother s = {.mesh = mesh, .lambda = lambda < LAMBDA_MIN ? LAMBDA_MIN : lambda};
+    qc_complex *result = QC__NEW(ctx, qc_complex, mesh->n_faces);
+    qc_status status = result ? prepare(ctx, &s, weight, trusted, x) : QC_ERR_NOMEM;
+    if (!status) {
+        bool changed = true;
+        memcpy(result, x, (size_t)mesh->n_faces * sizeof *x);
+        qc__field_match(ctx, mesh, s.c.rho, x, NULL, s.theta);
+        for (int32_t i = 0; !status && changed && i < rounds; i++) {
+            status = smooth_round(ctx, &s, result, &changed);
+            if (!status && !qc__progress(ctx, (i + 1.0) / rounds)) status = QC_ERR_CANCELLED;
+        }
+        if (!status) memcpy(x, result, (size_t)mesh->n_faces * sizeof *x);
+    }
+    smoother_free(&s);
+    qc__free(result);
+    return status;
+}
