@@ -1,0 +1,18 @@
+/* qc/qc.h - the whole SDK in one include. */
+#ifndef QC_QC_H
+#define QC_QC_H
+
+#include <qc/base.h>
+#include <qc/cover.h>
+#include <qc/dec.h>
+#include <qc/field.h>
+#include <qc/map.h>
+#include <qc/mesh.h>
+#include <qc/pipeline.h>
+#include <qc/plugin.h>
+#include <qc/remesh.h>
+#include <qc/shape.h>
+#include <qc/sparse.h>
+#include <qc/stage.h>
+
+#endif

@@ -1,0 +1,64 @@
+/* Parts of qc_remesh, one file each. Not installed. */
+#ifndef QC_REMESH_INTERNAL_H
+#define QC_REMESH_INTERNAL_H
+
+#include <qc/remesh.h>
+
+#include "sdk/base/internal.h"
+
+#define QC__DEFAULT_QUADS 10000.0
+
+/* --- connected components ----------------------------------------------------------------------- */
+
+/* Faces and vertices of a mesh sorted by component, each in increasing order. */
+typedef struct qc__parts {
+    const qc_mesh *mesh;
+    int32_t n;
+    int32_t *face_start, *face;     /* n + 1, n_faces                                               */
+    int32_t *vertex_start, *vertex; /* n + 1, n_vertices                                            */
+    int32_t *local;                 /* n_vertices: number in its component                          */
+    double *area;                   /* n                                                            */
+} qc__parts;
+qc_status qc__parts_create(qc_ctx *ctx, const qc_mesh *mesh, qc__parts *out);
+void qc__parts_clear(qc__parts *parts);
+/* Component c as a mesh whose source numbers are those of parts->mesh (so: of the input). */
+qc_status qc__parts_mesh(qc_ctx *ctx, const qc__parts *parts, int32_t c, qc_mesh **out);
+
+/* --- density ------------------------------------------------------------------------------------ */
+
+/* The density parameters of one qc.size step as they were set. */
+typedef struct qc__density {
+    char step[64];
+    double quads, edge_length, edge_length_rel;
+} qc__density;
+/* The first qc.size step from `first` on; false when there is none. */
+bool qc__density_find(const qc_pipeline *pipeline, uint32_t first, qc__density *out);
+/* Sets the step's parameters for a part of the mesh with the given area. */
+qc_status qc__density_share(qc_pipeline *pipeline, const qc__density *density, const qc_mesh *mesh,
+                            double area);
+qc_status qc__density_restore(qc_pipeline *pipeline, const qc__density *density);
+
+/* --- results ------------------------------------------------------------------------------------ */
+
+qc_status qc__warn(qc_ctx *ctx, qc_remesh_result *result, const char *format, ...)
+    QC__PRINTF(3, 4);
+qc_status qc__warn_repairs(qc_ctx *ctx, const qc_repair_report *report, qc_remesh_result *result);
+/* Names component c by number, size and place, with the context's last error. */
+qc_status qc__warn_failure(qc_ctx *ctx, const qc__parts *parts, int32_t c,
+                           qc_remesh_result *result);
+
+/* What the runs of the components made; entry c is NULL when there is none. */
+typedef struct qc__collection {
+    qc_polygon_mesh **quads, **uv; /* n components */
+    qc_face_field **field;
+    qc_report **report;
+} qc__collection;
+qc_status qc__collection_create(qc_ctx *ctx, int32_t n, qc__collection *out);
+void qc__collection_clear(qc__collection *all, int32_t n);
+/* Takes over what bag holds beyond `before`, the bag the run of component c began with. */
+qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_bag *before,
+                             const qc_bag *bag);
+qc_status qc__collection_merge(qc_ctx *ctx, const qc__collection *all, const qc__parts *parts,
+                               qc_remesh_result *result);
+
+#endif

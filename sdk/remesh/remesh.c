@@ -1,0 +1,177 @@
+/* qc_remesh: a pipeline run once on the input and then once per connected component. */
+#include <string.h>
+
+#include "sdk/remesh/internal.h"
+
+/* Share of the progress bar for the steps on the whole input. */
+#define WHOLE 0.05
+
+/* Everything a run of the components needs to know. */
+typedef struct job {
+    qc_ctx *ctx;
+    qc_pipeline *pipeline;
+    uint32_t split; /* first step which runs per component */
+    qc_bag *whole;
+    qc__parts parts;
+    qc__collection all;
+    const qc_remesh_options *options;
+    qc_remesh_result *result;
+} job;
+
+/* The step after the first one which outputs a mesh; 0 when there is none. */
+static uint32_t split_after(const qc_pipeline *pipeline) {
+    for (uint32_t i = 0; i < qc_pipeline_count(pipeline); i++) {
+        const qc_stage *stage = qc_pipeline_step_stage(pipeline, i);
+        for (uint32_t p = 0; p < stage->n_out; p++)
+            if (strcmp(qc_stage_out(stage, p)->type, QC_TYPE_MESH) == 0) return i + 1;
+    }
+    return 0;
+}
+
+/* The bag of the whole input with the component in place of the mesh. */
+static qc_status component_bag(const job *j, int32_t c, qc_bag **out) {
+    qc_mesh *part = NULL;
+    qc_bag *bag = NULL;
+    qc_status status = qc__parts_mesh(j->ctx, &j->parts, c, &part);
+    if (status == QC_OK) status = qc_bag_create(j->ctx, &bag);
+    for (uint32_t i = 0; status == QC_OK && i < qc_bag_count(j->whole); i++) {
+        const char *name = qc_bag_name(j->whole, i);
+        const void *object = qc_bag_get(j->whole, name);
+        status = qc_bag_put(bag, name, object == j->parts.mesh ? part : object);
+    }
+    qc_object_release(part);
+    if (status == QC_OK)
+        *out = bag;
+    else
+        qc_bag_free(bag);
+    return status;
+}
+
+static qc_status run_component(job *j, int32_t c) {
+    qc_bag *bag = NULL;
+    qc_status status = component_bag(j, c, &bag);
+    if (status == QC_OK)
+        status = qc_pipeline_run_range(j->pipeline, j->split, qc_pipeline_count(j->pipeline), bag);
+    if (status == QC_OK) status = qc__collection_add(j->ctx, &j->all, c, j->whole, bag);
+    qc_bag_free(bag);
+    return status;
+}
+
+/* Whether the error is about this component alone. */
+static bool is_local(qc_status status) {
+    return status != QC_OK && status != QC_ERR_CANCELLED && status != QC_ERR_NOMEM &&
+           status != QC_ERR_WIRING && status != QC_ERR_ABI;
+}
+
+/* The error a call ends with when no component has a result: that of the first one. */
+typedef struct kept_error {
+    qc_status status;
+    int64_t where;
+    char stage[64], text[512];
+} kept_error;
+
+static void keep(qc_ctx *ctx, qc_status status, kept_error *kept) {
+    const qc_error *error = qc_ctx_error(ctx);
+    if (kept->status != QC_OK) return;
+    kept->status = status;
+    kept->where = error->where;
+    snprintf(kept->stage, sizeof kept->stage, "%s", error->stage);
+    snprintf(kept->text, sizeof kept->text, "%s", error->text);
+}
+
+static qc_status raise_kept(qc_ctx *ctx, const kept_error *kept) {
+    const qc__range outer = qc__range_begin(ctx, kept->stage, 0, 1);
+    qc__fail(ctx, kept->status, kept->where, "%s", kept->text);
+    qc__range_end(ctx, outer);
+    return kept->status;
+}
+
+static qc_status run_components(job *j) {
+    const int32_t n = j->parts.n;
+    kept_error first = {QC_OK, -1, "", ""};
+    qc__density density;
+    const bool shared = n > 1 && qc__density_find(j->pipeline, j->split, &density);
+    qc_status status = QC_OK;
+    for (int32_t c = 0; c < n && status == QC_OK; c++) {
+        const double faces = j->parts.mesh->n_faces;
+        const qc__range outer =
+            qc__range_begin(j->ctx, NULL, WHOLE + (1 - WHOLE) * j->parts.face_start[c] / faces,
+                            WHOLE + (1 - WHOLE) * j->parts.face_start[c + 1] / faces);
+        if (shared)
+            status = qc__density_share(j->pipeline, &density, j->parts.mesh, j->parts.area[c]);
+        if (status == QC_OK) status = run_component(j, c);
+        qc__range_end(j->ctx, outer);
+        if (!is_local(status) || j->options->strict || n == 1) continue;
+        keep(j->ctx, status, &first);
+        j->result->n_failed++;
+        status = qc__warn_failure(j->ctx, &j->parts, c, j->result);
+    }
+    if (status == QC_OK && j->result->n_failed == n) status = raise_kept(j->ctx, &first);
+    if (shared) {
+        const qc_status restored = qc__density_restore(j->pipeline, &density);
+        if (status == QC_OK) status = restored;
+    }
+    return status;
+}
+
+static qc_status run_whole(job *j, const qc_polygon_mesh *input) {
+    qc_status status = qc_bag_put(j->whole, "input", input);
+    if (status == QC_OK) status = qc_pipeline_check(j->pipeline, j->whole);
+    if (status != QC_OK) return status;
+    const qc__range outer = qc__range_begin(j->ctx, NULL, 0.0, WHOLE);
+    status = qc_pipeline_run_range(j->pipeline, 0, j->split, j->whole);
+    qc__range_end(j->ctx, outer);
+    if (status != QC_OK) return status;
+    const qc_repair_report *report = qc_bag_latest(j->whole, QC_TYPE_REPAIR_REPORT);
+    if (report) status = qc__warn_repairs(j->ctx, report, j->result);
+    const qc_mesh *mesh = qc_bag_latest(j->whole, QC_TYPE_MESH);
+    j->result->mesh = qc_object_retain(mesh);
+    if (status == QC_OK) status = qc__parts_create(j->ctx, mesh, &j->parts);
+    return status;
+}
+
+static qc_status run_job(job *j, const qc_polygon_mesh *input) {
+    qc_status status = qc_bag_create(j->ctx, &j->whole);
+    if (status == QC_OK) status = run_whole(j, input);
+    if (status == QC_OK) status = qc__collection_create(j->ctx, j->parts.n, &j->all);
+    if (status == QC_OK) {
+        status = run_components(j);
+        if (status == QC_OK) status = qc__collection_merge(j->ctx, &j->all, &j->parts, j->result);
+        qc__collection_clear(&j->all, j->parts.n);
+    }
+    qc__parts_clear(&j->parts);
+    qc_bag_free(j->whole);
+    return status;
+}
+
+qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_mesh *input,
+                    const qc_remesh_options *options, qc_remesh_result *result) {
+    qc_remesh_options o = QC_REMESH_OPTIONS_INIT;
+    if (options)
+        memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
+    qc_remesh_result r;
+    memset(&r, 0, sizeof r);
+    job j = {.ctx = ctx, .pipeline = pipeline, .options = &o, .result = &r};
+    j.split = split_after(pipeline);
+    if (j.split == 0)
+        return qc__fail(ctx, QC_ERR_WIRING, -1,
+                        "no step of the pipeline outputs a %s; begin with qc.repair", QC_TYPE_MESH);
+    const qc_status status = run_job(&j, input);
+    if (status == QC_OK)
+        *result = r;
+    else
+        qc_remesh_result_clear(&r);
+    return status;
+}
+
+void qc_remesh_result_clear(qc_remesh_result *result) {
+    if (!result) return;
+    qc_object_release(result->mesh);
+    qc_object_release(result->quads);
+    qc_object_release(result->uv);
+    qc_object_release(result->field);
+    qc_object_release(result->report);
+    for (int32_t i = 0; i < result->n_warnings; i++) qc__free(result->warning[i]);
+    qc__free(result->warning);
+    memset(result, 0, sizeof *result);
+}
