@@ -1,0 +1,41 @@
+# Installation: headers, the shared library, the program, a package for find_package and one for
+# pkg-config. The static twin is for tests only and stays behind.
+include(CMakePackageConfigHelpers)
+
+# Headers alone: what a plugin needs which calls no function of the library.
+add_library(quadcover_headers INTERFACE)
+add_library(QuadCover::headers ALIAS quadcover_headers)
+set_target_properties(quadcover_headers PROPERTIES EXPORT_NAME headers)
+target_include_directories(quadcover_headers INTERFACE
+  $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/sdk/include>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/sdk/include/qc DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.h")
+install(TARGETS quadcover_shared quadcover_headers EXPORT QuadCoverTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/plugins/template
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/quadcover PATTERN "build*" EXCLUDE)
+
+# The program finds the library beside it, wherever the prefix is moved to.
+file(RELATIVE_PATH _qc_bin_to_lib ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+if(TARGET quadcover)
+  set_target_properties(quadcover PROPERTIES INSTALL_RPATH "$ORIGIN/${_qc_bin_to_lib}")
+  install(TARGETS quadcover RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+set(_qc_package ${CMAKE_INSTALL_LIBDIR}/cmake/QuadCover)
+install(EXPORT QuadCoverTargets NAMESPACE QuadCover:: DESTINATION ${_qc_package})
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/QuadCoverConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/QuadCoverConfig.cmake INSTALL_DESTINATION ${_qc_package})
+# Before 1.0 a new minor version may change the API.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/QuadCoverConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/QuadCoverConfig.cmake
+        ${PROJECT_BINARY_DIR}/QuadCoverConfigVersion.cmake DESTINATION ${_qc_package})
+
+file(RELATIVE_PATH QC_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/qc.pc.in ${PROJECT_BINARY_DIR}/qc.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/qc.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
