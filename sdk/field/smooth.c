@@ -27,7 +27,7 @@ typedef struct smoother {
     int32_t *fixed; /* n_components: face with alpha = 0, -1 = none                           */
     double *value;  /* of the matrix                                                          */
     double *theta, *alpha;
-    qc_complex *guide; /* n_faces: x at the beginning                                          */
+    const qc_complex *guide; /* n_faces                                                       */
     qc_factor *factor;
 } smoother;
 
@@ -39,7 +39,6 @@ static void smoother_free(smoother *s) {
     qc__free(s->value);
     qc__free(s->theta);
     qc__free(s->alpha);
-    qc__free(s->guide);
     qc_factor_free(s->factor);
 }
 
@@ -103,8 +102,7 @@ static qc_status factorise(qc_ctx *ctx, smoother *s) {
     return status;
 }
 
-static qc_status prepare(qc_ctx *ctx, smoother *s, const double *weight, const uint8_t *trusted,
-                         const qc_complex *x) {
+static qc_status prepare(qc_ctx *ctx, smoother *s, const double *weight, const uint8_t *trusted) {
     const qc_mesh *mesh = s->mesh;
     qc_status status = qc__connection_create(ctx, mesh, &s->c);
     if (!status) status = qc__face_pattern_create(ctx, mesh, &s->pattern);
@@ -114,10 +112,7 @@ static qc_status prepare(qc_ctx *ctx, smoother *s, const double *weight, const u
     s->value = QC__NEW(ctx, double, s->pattern.colptr[mesh->n_faces]);
     s->theta = QC__NEW(ctx, double, mesh->n_edges);
     s->alpha = QC__NEW(ctx, double, mesh->n_faces);
-    s->guide = QC__NEW(ctx, qc_complex, mesh->n_faces);
-    if (!s->pull || !s->fixed || !s->value || !s->theta || !s->alpha || !s->guide)
-        return QC_ERR_NOMEM;
-    memcpy(s->guide, x, (size_t)mesh->n_faces * sizeof *x);
+    if (!s->pull || !s->fixed || !s->value || !s->theta || !s->alpha) return QC_ERR_NOMEM;
     status = set_pull(ctx, s, weight, trusted);
     if (status) return status;
     fill_matrix(s);
@@ -162,14 +157,16 @@ static qc_status smooth_round(qc_ctx *ctx, smoother *s, qc_complex *x, bool *cha
     return QC_OK;
 }
 
-qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
-                          const uint8_t *trusted, double lambda, int32_t rounds, qc_complex *x) {
+qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *guide,
+                          const double *weight, const uint8_t *trusted, double lambda,
+                          int32_t rounds, qc_complex *x) {
     if (!(lambda >= 0 && lambda <= 1))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "lambda = %g is not in [0, 1]", lambda);
     if (rounds < 1) return QC_OK;
     smoother s = {.mesh = mesh, .lambda = lambda < LAMBDA_MIN ? LAMBDA_MIN : lambda};
+    s.guide = guide ? guide : x; /* x itself changes at the very end only */
     qc_complex *result = QC__NEW(ctx, qc_complex, mesh->n_faces);
-    qc_status status = result ? prepare(ctx, &s, weight, trusted, x) : QC_ERR_NOMEM;
+    qc_status status = result ? prepare(ctx, &s, weight, trusted) : QC_ERR_NOMEM;
     if (!status) {
         bool changed = true;
         memcpy(result, x, (size_t)mesh->n_faces * sizeof *x);

@@ -3,24 +3,37 @@
 #include <qc/field.h>
 #include <qc/stage.h>
 
+#include <math.h>
 #include <string.h>
 
 typedef struct params {
     double lambda;
     int64_t rounds;
+    bool relax;
 } params;
 
+/* Start: the field itself, or the minimiser of the same energy over x^4, which is convex. */
+static qc_status smooth_field(qc_ctx *ctx, const qc_face_field *field, const params *given,
+                              qc_complex *x) {
+    const qc_mesh *mesh = field->mesh;
+    double lambda = given->lambda, t = (1 - lambda) / fmax(lambda, 1e-6);
+    qc_status status = QC_OK;
+    memcpy(x, field->x, (size_t)mesh->n_faces * sizeof *x);
+    if (given->relax)
+        status = qc_field_smoothest(ctx, mesh, field->weight, field->trusted, t, x);
+    if (!status)
+        status = qc_field_smooth(ctx, mesh, field->x, field->weight, field->trusted, lambda,
+                                 (int32_t)given->rounds, x);
+    return status;
+}
+
 static qc_status smooth(const qc_run *run, const void *p) {
-    const params *given = p;
     const qc_face_field *field = run->input(run, "field");
     const qc_mesh *mesh = field->mesh;
-    size_t bytes = (size_t)mesh->n_faces * sizeof(qc_complex);
-    qc_complex *x = qc__malloc(run->ctx, 1, bytes);
+    qc_complex *x = QC__NEW(run->ctx, qc_complex, mesh->n_faces);
     if (!x) return QC_ERR_NOMEM;
-    memcpy(x, field->x, bytes);
     qc_face_field *out = NULL;
-    qc_status status = qc_field_smooth(run->ctx, mesh, field->weight, field->trusted, given->lambda,
-                                       (int32_t)given->rounds, x);
+    qc_status status = smooth_field(run->ctx, field, p, x);
     if (!status)
         status = qc_face_field_create(run->ctx, mesh, x, field->weight, field->trusted, &out);
     qc__free(x);
@@ -32,10 +45,13 @@ static const qc_port inputs[] = {
 };
 static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothed field"}};
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, lambda, 0.5, 0, 1, "",
+    QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "",
                   "0 keeps the trusted directions, 1 ignores them and only smooths"),
     QC_PARAM_INT(params, rounds, 20, 0, 1000, "",
                  "at most so many times: solve, rotate, match again; ends when the matching stays"),
+    QC_PARAM_BOOL(params, relax, true,
+                  "start from the minimiser over x^4, which has far fewer singularities; off: from the "
+                  "field itself, whose singularities mostly stay"),
 };
 
 const qc_stage qc_stage_field_smooth = {
@@ -53,7 +69,7 @@ const qc_stage qc_stage_field_smooth = {
     1,
     1,
     table,
-    2,
+    3,
     sizeof(params),
     smooth,
 };

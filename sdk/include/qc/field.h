@@ -63,11 +63,13 @@ QC_API qc_status qc_field_extend(qc_ctx *ctx, const qc_mesh *mesh, const double 
                                  double fraction, qc_complex *x, uint8_t *trusted);
 /* Smoothing (5.3), (5.4): rotates each cross by the minimiser of lambda E_S + (1 - lambda) E_A for the
  * matching of x, then re-matches; `rounds` times or until the matching no longer changes. E_A pulls the
- * trusted faces towards the x given, with w_t A_t / l^2 (l as in qc_field_stability). weight NULL = 1; trusted
- * NULL = all faces; both NULL: lambda acts as 1. x in place. Errors: ARGUMENT, NOMEM, CANCELLED. */
-QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
-                                 const uint8_t *trusted, double lambda, int32_t rounds,
-                                 qc_complex *x);
+ * trusted faces towards guide (NULL = the x given) with w_t A_t / l^2 (l as in qc_field_stability). weight
+ * NULL = 1; trusted NULL = all faces; both NULL: lambda acts as 1. x in place. The result is a local minimum:
+ * start from qc_field_smoothest with alignment (1 - lambda) / lambda for few singularities. Errors: ARGUMENT,
+ * NOMEM, CANCELLED. */
+QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *guide,
+                                 const double *weight, const uint8_t *trusted, double lambda,
+                                 int32_t rounds, qc_complex *x);
 /* Smoothest field: in each component the eigenvector of the smallest eigenvalue of the connection Laplacian
  * on fourth powers x^4, by inverse iteration on its factor. With alignment > 0 and weight or trusted given:
  * minimiser of E_S(x^4) + alignment sum w_t A_t / l^2 |x^4 - guide^4|^2 over the trusted faces (in: guide,
