@@ -1,0 +1,83 @@
+/* qc_hodge_remove_curl: no curl is left (1e-12), E_D is the energy of what was taken away, the rest is
+ * orthogonal to it, and neither gauge nor the unit of length matters. */
+#include "unit/dec/forms.h"
+
+static void remove_curl(qc_ctx *ctx, const surface *s, const qc_cover *cover, int kind) {
+    (void)s, (void)kind;
+    const qc_mesh *m = cover->mesh;
+    const int32_t n = 3 * m->n_faces;
+    double *cot = cotangents(ctx, m), energy = -1, again = -1;
+    qc_complex *z = random_form(m), *out = NEW_ARRAY(qc_complex, n), *diff = NEW_ARRAY(qc_complex, n);
+    qc_complex *v = NEW_ARRAY(qc_complex, m->n_edges), *curl = NEW_ARRAY(qc_complex, m->n_edges);
+    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, out, v, &energy), QC_OK);
+    assert_int_equal(qc_form_curl_edges(ctx, cover, out, curl), QC_OK);
+    assert_true(largest(m->n_edges, curl) < 1e-12 * largest(n, z));
+    for (int32_t h = 0; h < n; h++)
+        diff[h] = (qc_complex){z[h].re - out[h].re, z[h].im - out[h].im};
+    assert_true(fabs(0.5 * qc_form_product(m, cot, diff, diff).re - energy) < 1e-12 * energy);
+    assert_true(cosine(m, cot, diff, out, norm(m, cot, z)) < 1e-12);
+    /* The difference is J grad v. */
+    assert_int_equal(qc_form_gradient_edges(ctx, cover, v, out), QC_OK);
+    assert_int_equal(qc_form_rotate(ctx, m, cot, out, out), QC_OK);
+    for (int32_t h = 0; h < n; h++)
+        assert_true(cabs(number(out[h]) - number(diff[h])) < 1e-12 * largest(n, z));
+    /* In place, with nothing else asked for; a second time nothing is found. */
+    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, z, NULL, NULL), QC_OK);
+    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, NULL, NULL, &again), QC_OK);
+    assert_true(again < 1e-22 * energy);
+    free(cot), free(z), free(out), free(diff), free(v), free(curl);
+}
+
+/* Turning the frame of every face changes neither the energy nor the size of the result. */
+static void test_gauge(void **state) {
+    (void)state;
+    qc_ctx *ctx = new_context();
+    qc_mesh *m = build_surface(ctx, &SURFACES[2], 1);
+    double *cot = cotangents(ctx, m), energy[2];
+    int8_t *matching = random_matching(m, SPARSE);
+    int32_t *turn = NEW_ARRAY(int32_t, m->n_faces);
+    qc_complex *z = random_form(m);
+    const qc_cover cover = {m, matching};
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, NULL, NULL, &energy[0]), QC_OK);
+    for (int32_t t = 0; t < m->n_faces; t++) turn[t] = random_int(4);
+    for (int32_t h = 0; h < 3 * m->n_faces; h++) z[h] = qc_quarter_turn(z[h], turn[h / 3]);
+    for (int32_t e = 0; e < m->n_edges; e++)
+        matching[e] = (int8_t)(matching[e] + turn[m->edge_halfedge[2 * e] / 3] -
+                               turn[m->edge_halfedge[2 * e + 1] / 3]);
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, NULL, NULL, &energy[1]), QC_OK);
+    assert_true(fabs(energy[0] / energy[1] - 1) < 1e-12);
+    free(cot), free(matching), free(turn), free(z);
+    qc_object_release(m);
+    qc_ctx_free(ctx);
+}
+
+/* The unit of length does not matter, nor does a sliver of 1e-9. */
+static void test_scale_and_slivers(void **state) {
+    (void)state;
+    qc_ctx *ctx = new_context();
+    double energy[3];
+    for (int i = 0; i < 3; i++) {
+        random_state = 5;
+        qc_mesh *m = build_surface(ctx, &SURFACES[1], pow(10, 6 * (i - 1)));
+        int8_t *matching = random_matching(m, DENSE);
+        const qc_cover cover = {m, matching};
+        double *cot = cotangents(ctx, m);
+        qc_complex *z = random_form(m);
+        assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, NULL, NULL, &energy[i]), QC_OK);
+        assert_true(fabs(energy[i] / energy[0] - 1) < 1e-11);
+        cot[0] = 1e9;
+        cot[1] = 1e-9 - cot[2];
+        assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, z, NULL, NULL), QC_OK);
+        free(cot), free(matching), free(z);
+        qc_object_release(m);
+    }
+    qc_ctx_free(ctx);
+}
+
+static void test_remove_curl(void **state) { (void)state, for_all_covers(remove_curl); }
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_remove_curl), cmocka_unit_test(test_gauge),
+                                       cmocka_unit_test(test_scale_and_slivers)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
