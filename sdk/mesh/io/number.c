@@ -38,7 +38,7 @@ static bool scale(uint64_t w, int64_t e, double *out) {
 }
 
 static bool ends_number(const char *p, const char *end) {
-    return p == end || qc__is_blank(*p) || qc__is_end(*p) || *p == '/' || *p == '\\' || *p == '#';
+    return p == end || qc__is_blank(*p) || qc__is_end(*p) || *p == '/' || *p == '\\';
 }
 
 /* strtod on a copy of the token: the data need not end with a NUL. */

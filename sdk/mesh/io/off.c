@@ -88,6 +88,22 @@ static qc_status check_end(qc__text *t, const char *what, int64_t i, int64_t n) 
                          what, (long long)i, (long long)n);
 }
 
+/* The number of edges: on the line of the other counts, alone on the next, or missing. */
+static void skip_edge_count(qc__text *t) {
+    int64_t ignored;
+    qc__skip_blanks(t);
+    if (t->p < t->end && *t->p != '#' && !qc__is_end(*t->p)) {
+        qc__skip_line(t);
+        return;
+    }
+    qc__text copy = *t;
+    qc__skip_space(&copy);
+    bool alone = qc__take_int(&copy, &ignored);
+    qc__skip_blanks(&copy);
+    if (alone && qc__at_line_end(&copy)) *t = copy;
+    qc__skip_line(t);
+}
+
 qc_status qc__read_off(qc__text *t, qc__soup *s) {
     int64_t n_vertices, n_faces;
     double xyz[3];
@@ -95,7 +111,7 @@ qc_status qc__read_off(qc__text *t, qc__soup *s) {
     if (status == QC_OK) status = read_count(t, "vertices", &n_vertices);
     if (status == QC_OK) status = read_count(t, "faces", &n_faces);
     if (status != QC_OK) return status;
-    qc__skip_line(t); /* the number of edges, if there                                              */
+    skip_edge_count(t);
     for (int64_t i = 0; i < n_vertices; i++) {
         status = check_end(t, "vertex", i, n_vertices);
         if (status == QC_OK) status = qc__take_point(t, "vertex", i, xyz);

@@ -72,11 +72,14 @@ qc_status qc__read_stl_ascii(qc__text *t, qc__soup *s) {
                 return QC_ERR_NOMEM;
             corners++;
         } else if (qc__take_word(t, "outer") || qc__take_word(t, "endloop")) {
-            if (corners >= 0) status = close_loop(t, corners, s->n_face);
-            corners = corners < 0 && qc__word_length(t) == 0 ? 0 : -1;
-            qc__skip_line(t);
+            bool begin = corners < 0;
+            if (!begin) status = close_loop(t, corners, s->n_face);
+            qc__skip_blanks(t);
+            corners = begin && qc__take_word(t, "loop") ? 0 : -1;
+        } else if (qc__take_word(t, "solid") || qc__take_word(t, "endsolid")) {
+            qc__skip_line(t); /* a name may hold any words                                          */
         } else {
-            qc__skip_line(t); /* solid, facet normal, endfacet, endsolid                            */
+            t->p += qc__word_length(t); /* facet, normal and its numbers, endfacet                   */
         }
         if (status != QC_OK) return status;
         if (i % 16384 == 0 && !qc__text_progress(t)) return QC_ERR_CANCELLED;

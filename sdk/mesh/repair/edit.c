@@ -151,7 +151,7 @@ bool qc__edit_collapse(qc__edit *e, int32_t h, double least) {
     if (bu && bv && g >= 0) return false;
     if (!apex_survives(e, h) || (g >= 0 && !apex_survives(e, g))) return false;
     mark_ring(e, u);
-    if (count_marked(e, v) - 2 != (g >= 0 ? 2 : 1)) return false; /* u and v see each other, too     */
+    if (count_marked(e, v) != (g >= 0 ? 2 : 1)) return false; /* link condition                      */
     int32_t stays = bu != bv ? (bu ? u : v) : u < v ? u : v, gone = stays == u ? v : u;
     if (!ring_survives(e, gone, stays, least)) {
         int32_t swap = stays;

@@ -65,6 +65,9 @@ typedef struct qc__polygon {
 } qc__polygon;
 void qc__triangulate_polygon(qc__polygon *p);
 
+/* Sets the twins of the halfedges side[0..n) of one edge, n > 2; those left -1 are cut open. */
+void qc__repair_pair_best(qc__repair *r, const int32_t *side, int32_t n);
+
 /* The steps, in the order in which they are made. */
 qc_status qc__repair_triangulate(qc__repair *r);
 qc_status qc__repair_weld(qc__repair *r);

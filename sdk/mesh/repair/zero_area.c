@@ -1,9 +1,9 @@
 /* Repair step 8: faces of (relatively) zero area. Needles lose their shortest edge by a collapse, caps
- * their longest edge by a flip, or are removed at the boundary; a few rounds, since one can hide
- * another. What cannot be improved stays and is logged. */
+ * their longest edge by a flip, or are removed at the boundary; some rounds forwards and backwards,
+ * since one can hide another. What cannot be improved stays and is logged. */
 #include "sdk/mesh/repair/edit.h"
 
-enum { ROUNDS = 16 };
+enum { ROUNDS = 32 };
 static const double LEAST = 1e-12; /* area over squared longest edge                               */
 
 static double length2(const qc__repair *r, int32_t h) {
@@ -33,33 +33,41 @@ static bool improve(qc__edit *e, int32_t f) {
     return qc__edit_flip(e, longest, LEAST) || (!needle && qc__edit_collapse(e, shortest, LEAST));
 }
 
+static bool is_bad(const qc__edit *e, int32_t f) {
+    return e->r->triangle[3 * f] >= 0 && face_quality(e, f) < LEAST;
+}
+
+/* Tries every bad face once, forwards or backwards; false when nothing changed. */
+static bool improve_all(qc__edit *e, const int32_t *bad, int32_t n, bool backwards) {
+    bool any = false;
+    for (int32_t i = 0; i < n; i++) {
+        int32_t f = bad[backwards ? n - 1 - i : i];
+        if (!is_bad(e, f) || !improve(e, f)) continue;
+        any = true;
+        qc__repair_note(e->r, QC_REPAIR_ZERO_AREA, e->r->source_face[f]);
+    }
+    return any;
+}
+
 qc_status qc__repair_zero_area(qc__repair *r) {
     qc__edit e;
-    int32_t n = 0, left = 0;
-    int32_t *bad = QC__NEW(r->ctx, int32_t, r->n_faces);
-    qc_status status = bad ? qc__edit_begin(r, &e) : QC_ERR_NOMEM;
-    if (status != QC_OK) {
+    qc_status status = QC_OK;
+    int32_t n = 0, *bad = QC__NEW(r->ctx, int32_t, r->n_faces);
+    if (!bad) return QC_ERR_NOMEM;
+    if (qc__edit_begin(r, &e) != QC_OK) {
         qc__free(bad);
-        return status;
+        return QC_ERR_NOMEM;
     }
     for (int32_t f = 0; f < r->n_faces; f++)
-        if (face_quality(&e, f) < LEAST) bad[n++] = f;
+        if (is_bad(&e, f)) bad[n++] = f;
     for (int round = 0; round < ROUNDS && n > 0; round++) {
-        bool any = false;
-        left = 0;
-        for (int32_t i = 0; i < n && status == QC_OK; i++) {
-            int32_t f = bad[i];
-            if (r->triangle[3 * f] < 0 || face_quality(&e, f) >= LEAST) continue;
-            int32_t source = r->source_face[f];
-            if (improve(&e, f)) {
-                any = true;
-                qc__repair_note(r, QC_REPAIR_ZERO_AREA, source);
-            }
-            if (r->triangle[3 * f] >= 0 && face_quality(&e, f) < LEAST) bad[left++] = f;
-            if (i % 256 == 0 && !qc__progress(r->ctx, 0.7)) status = QC_ERR_CANCELLED;
-        }
+        if (!improve_all(&e, bad, n, round % 2)) break;
+        int32_t left = 0;
+        for (int32_t i = 0; i < n; i++)
+            if (is_bad(&e, bad[i])) bad[left++] = bad[i];
         n = left;
-        if (!any) break;
+        if (!qc__progress(r->ctx, 0.7)) status = QC_ERR_CANCELLED;
+        if (status != QC_OK) break;
     }
     if (status == QC_OK && n > 0)
         qc__log(r->ctx, QC_LOG_WARNING, "repair: %d faces of zero area could not be removed (face %d%s)",
