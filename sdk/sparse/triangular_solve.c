@@ -21,6 +21,14 @@ static inline void subtract(const int nb, const double *l, double sign, const do
     }
 }
 
+static inline void copy_row(int64_t row, const double *restrict x, double *restrict y) {
+    for (int64_t q = 0; q < row; q++) y[q] = x[q];
+}
+
+static inline void add_row(int64_t row, const double *restrict x, double *restrict y) {
+    for (int64_t q = 0; q < row; q++) y[q] += x[q];
+}
+
 /* Y <- L^{-1} Y within one supernode; t: rows below the diagonal block. */
 static inline void forward_supernode(const int nb, const qc_factor *F, int32_t s, double *Y,
                                      double *t) {
@@ -35,26 +43,59 @@ static inline void forward_supernode(const int nb, const qc_factor *F, int32_t s
         for (int64_t i = k + 1; i < w; i++) subtract(nb, L + NC * i, 1, x + row * k, x + row * i);
         for (int64_t i = 0; i < m; i++) subtract(nb, L + NC * (w + i), 1, x + row * k, t + row * i);
     }
-    for (int64_t i = 0; i < m; i++)
-        for (int64_t q = 0; q < row; q++) Y[row * below[i] + q] += t[row * i + q];
+    for (int64_t i = 0; i < m; i++) add_row(row, t + row * i, Y + row * below[i]);
 }
 
-/* Y <- L^{-H} Y within one supernode */
+/* y -= sum_i conj(l_i) x_i over n rows. Backward, as the supernodes go: one stream from memory. */
+static inline void subtract_dot(const int nb, int64_t n, const double *l, const double *x,
+                                double *y) {
+    double sum[NC * BLOCK] = { 0 };
+    for (int64_t i = n; i-- > 0;) subtract(nb, l + NC * i, -1, x + NC * nb * i, sum);
+    for (int c = 0; c < NC * nb; c++) y[c] += sum[c];
+}
+
+/* The same for four columns of L and one right-hand side: the sums do not wait for each other. */
+static void subtract_four_dots(int64_t n, const double *L, int64_t ld, const double *x, double *y) {
+    const double *l0 = L, *l1 = l0 + NC * ld, *l2 = l1 + NC * ld, *l3 = l2 + NC * ld;
+    double a0[2] = { 0, 0 }, a1[2] = { 0, 0 }, a2[2] = { 0, 0 }, a3[2] = { 0, 0 };
+    for (int64_t i = NC * (n - 1); i >= 0; i -= NC) {
+        subtract(1, l0 + i, -1, x + i, a0);
+        subtract(1, l1 + i, -1, x + i, a1);
+        subtract(1, l2 + i, -1, x + i, a2);
+        subtract(1, l3 + i, -1, x + i, a3);
+    }
+    for (int c = 0; c < NC; c++) {
+        y[c] += a0[c];
+        y[NC + c] += a1[c];
+        y[2 * NC + c] += a2[c];
+        y[3 * NC + c] += a3[c];
+    }
+}
+
+/* Y <- L^{-H} Y within one supernode, by groups of up to four columns: first all rows below the
+ * group, then its own triangle. t: all rows of the supernode. */
 static inline void backward_supernode(const int nb, const qc_factor *F, int32_t s, double *Y,
                                       double *t) {
     const qc_symbolic *S = F->S;
     const int64_t row = NC * nb, first = S->super[s], w = S->super[s + 1] - first;
-    const int64_t r = S->rowptr[s + 1] - S->rowptr[s], m = r - w;
-    const int32_t *below = S->rows + S->rowptr[s] + w;
-    double *x = Y + row * first;
-    for (int64_t i = 0; i < m; i++)
-        memcpy(t + row * i, Y + row * below[i], (size_t)row * sizeof *t);
-    for (int64_t k = w; k-- > 0;) {
-        const double *L = F->values + NC * (S->panel[s] + k * r);
-        double *y = x + row * k;
-        for (int64_t i = k + 1; i < w; i++) subtract(nb, L + NC * i, -1, x + row * i, y);
-        for (int64_t i = 0; i < m; i++) subtract(nb, L + NC * (w + i), -1, t + row * i, y);
+    const int64_t r = S->rowptr[s + 1] - S->rowptr[s];
+    const int32_t *rows = S->rows + S->rowptr[s];
+    const double *L = F->values + NC * S->panel[s];
+    for (int64_t i = 0; i < r; i++) copy_row(row, Y + row * rows[i], t + row * i);
+    for (int64_t end = w; end > 0;) {
+        const int64_t begin = end >= 4 ? end - 4 : 0;
+        if (nb == 1 && end - begin == 4) {
+            subtract_four_dots(r - end, L + NC * (end + begin * r), r, t + row * end, t + row * begin);
+        } else {
+            for (int64_t k = end; k-- > begin;)
+                subtract_dot(nb, r - end, L + NC * (end + k * r), t + row * end, t + row * k);
+        }
+        for (int64_t k = end - 1; k-- > begin;)
+            for (int64_t i = k + 1; i < end; i++)
+                subtract(nb, L + NC * (i + k * r), -1, t + row * i, t + row * k);
+        end = begin;
     }
+    for (int64_t k = 0; k < w; k++) copy_row(row, t + row * k, Y + row * (first + k));
 }
 
 typedef struct run {

@@ -148,6 +148,57 @@ static void larger_problem_is_finished_and_optimal(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* Smallest change by exactly three entries, from the formula of thesis 6.3.1. */
+static double best_triple(int32_t n, const double *P, const double *t, const double *z) {
+    double *g = calloc((size_t)n, sizeof *g), best = INFINITY;
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t j = 0; j < n; j++) g[i] += P[i + j * n] * (z[j] - t[j]);
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t j = i + 1; j < n; j++)
+            for (int64_t k = j + 1; k < n; k++)
+                for (int signs = 0; signs < 8; signs++) {
+                    const double a = signs & 1 ? 1 : -1, b = signs & 2 ? 1 : -1,
+                                 c = signs & 4 ? 1 : -1;
+                    best = fmin(best, 0.5 * (P[i + i * n] + P[j + j * n] + P[k + k * n]) +
+                                          a * g[i] + b * g[j] + c * g[k] + a * b * P[i + j * n] +
+                                          a * c * P[i + k * n] + b * c * P[j + k * n]);
+                }
+    free(g);
+    return best;
+}
+
+/* Random forms, and entries which interact like points of the plane: strong couplings. */
+static void pruning_misses_no_triple(void **state) {
+    (void)state;
+    enum { N = 50 };
+    qc_ctx *ctx = new_ctx(1);
+    double *P = malloc(N * N * sizeof *P), t[N], z[N];
+    int improved = 0;
+    for (int trial = 0; trial < 12; trial++) {
+        double place[2 * N], energy_of[2];
+        random_problem(N, 0.1, P, t);
+        for (int i = 0; i < 2 * N; i++) place[i] = uniform();
+        for (int i = 0; i < N && trial % 4; i++) {
+            for (int j = 0; j < N; j++)
+                P[i + j * N] = (trial % 2 && (i + j) % 2 ? -1 : 1) *
+                                   exp(-(1 + trial) * hypot(place[2 * i] - place[2 * j],
+                                                            place[2 * i + 1] - place[2 * j + 1])) +
+                               (i == j ? 0.01 : 0);
+        }
+        for (int32_t radius = 2; radius <= 3; radius++) {
+            qc_lattice_options options = { sizeof options, trial % 3 ? QC_ROUND_DIRECT : 1, radius };
+            assert_int_equal(qc_lattice_round(ctx, N, P, t, &options, z, NULL), QC_OK);
+            energy_of[radius - 2] = energy(N, P, t, z);
+        }
+        improved += energy_of[1] < energy_of[0] * (1 - 1e-9);
+        assert_true(best_triple(N, P, t, z) >= -1e-9 * energy_of[1]);
+        assert_true(best_neighbour(N, P, t, z, 2, 0) >= energy_of[1] * (1 - 1e-9));
+    }
+    assert_true(improved > 0);
+    free(P);
+    qc_ctx_free(ctx);
+}
+
 static bool stop(void *user, const char *stage, double fraction) {
     int *left = user;
     (void)stage;
@@ -193,6 +244,7 @@ int main(void) {
         cmocka_unit_test(result_is_locally_optimal),
         cmocka_unit_test(greedy_fixes_the_cheapest),
         cmocka_unit_test(larger_problem_is_finished_and_optimal),
+        cmocka_unit_test(pruning_misses_no_triple),
         cmocka_unit_test(errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -35,7 +35,11 @@ static void same_bytes_for_any_number_of_threads(void **state) {
         qc_factor *F = factor_of(ctx, &M, NULL), *G = real_factor_of(ctx, &M, NULL);
         assert_true(F->S->plan.ntask > 2 && F->S->plan.uses_blas);
         qc_complex *x = malloc(size * sizeof *x);
+        double residual = 1;
+        const qc_hermitian A = hermitian(&M);
         for (size_t i = 0; i < size; i++) x[i] = (qc_complex){ sin((double)i), cos((double)i) };
+        assert_int_equal(qc_solve_refined(ctx, F, &A, 0, x, &residual), QC_OK);
+        assert_true(residual < 1e-15);
         assert_int_equal(qc_solve(ctx, F, 20, x), QC_OK);
         if (threads == 1) {
             expected[0] = fingerprint(F);
