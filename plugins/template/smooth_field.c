@@ -1,7 +1,8 @@
 /* A complete QuadCover plugin with one stage: copy this folder, rename it, change `relax`.
  *
  * The stage relaxes a cross field: every cross moves towards the mean of its neighbours, carried
- * over the shared edges. Crosses are compared by their fourth powers, which do not see quarter turns. */
+ * over the shared edges. Crosses are compared by their fourth powers, which do not see quarter
+ * turns. */
 #include <complex.h>
 #include <stdlib.h>
 #include <qc/dec.h>
@@ -23,7 +24,9 @@ static const qc_param params[] = {
 static const qc_port in[] = {{"field", QC_TYPE_FACE_FIELD, 0, "any cross field"}};
 static const qc_port out[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoother field"}};
 
-static cplx fourth(cplx z) { return z * z * z * z; }
+static cplx fourth(cplx z) {
+    return z * z * z * z;
+}
 
 /* y = x^4; one round of y_t <- (1 - k) y_t + k mean_s (rho^4 y_s), normalised. */
 static void relax(const qc_face_field *f, const cplx *rho, const options *o, cplx *y, cplx *mean) {
@@ -48,7 +51,7 @@ static qc_status run(const qc_run *r, const void *p) {
     const size_t n_faces = (size_t)f->mesh->n_faces, n_edges = (size_t)f->mesh->n_edges;
     cplx *x = malloc(2 * n_faces * sizeof *x), *rho = malloc((n_edges + 3 * n_faces) * sizeof *rho);
     qc_complex *edge = (qc_complex *)(rho ? rho + n_edges : NULL);
-    qc_status status = x && rho ? QC_OK : (r->fail)(r, QC_ERR_NOMEM, -1, "out of memory");
+    qc_status status = x && rho ? QC_OK : r->fail(r, QC_ERR_NOMEM, -1, "out of memory");
     if (status == QC_OK) status = qc_tangent_edges(r->ctx, f->mesh, edge);
     if (status == QC_OK) status = qc_tangent_transport(r->ctx, f->mesh, edge, (qc_complex *)rho);
     for (size_t t = 0; status == QC_OK && t < n_faces; t++) x[t] = fourth(((const cplx *)f->x)[t]);
@@ -59,19 +62,39 @@ static qc_status run(const qc_run *r, const void *p) {
     for (size_t t = 0; status == QC_OK && t < n_faces; t++) x[t] = cexp(I * carg(x[t]) / 4);
     qc_face_field *smooth = NULL;
     if (status == QC_OK)
-        status = qc_face_field_create(r->ctx, f->mesh, (qc_complex *)x, f->weight, f->trusted, &smooth);
+        status =
+            qc_face_field_create(r->ctx, f->mesh, (qc_complex *)x, f->weight, f->trusted, &smooth);
     free(x);
     free(rho);
     return status == QC_OK ? r->output(r, "field", smooth) : status;
 }
 
-static const qc_stage stage = {QC_STAGE_SIZES, "org.example.smooth_field", "1.0",
-                               "Relaxes a cross field towards its neighbours",
-                               "Averages fourth powers of crosses carried over the edges.", "",
-                               in, out, 1, 1, params, 3, sizeof(options), run};
+static const qc_stage stage = {
+    QC_STAGE_SIZES,
+    .id = "org.example.smooth_field",
+    .version = "1.0",
+    .brief = "Relaxes a cross field towards its neighbours",
+    .doc = "Averages fourth powers of crosses carried over the edges.",
+    .in = in,
+    .out = out,
+    .n_in = 1,
+    .n_out = 1,
+    .params = params,
+    .n_params = sizeof params / sizeof *params,
+    .params_size = sizeof(options),
+    .run = run,
+};
 static const qc_stage *const list[] = {&stage, NULL};
-static const qc_stage *const *stages(void) { return list; }
+static const qc_stage *const *stages(void) {
+    return list;
+}
 
 QC_PLUGIN_EXPORT const qc_plugin qc_plugin_1 = {
-    sizeof(qc_plugin), QC_ABI_MAJOR, QC_ABI_MINOR, "org.example.smooth_field", "1.0", "MIT",
-    "https://example.org", NULL, NULL, stages, NULL};
+    sizeof(qc_plugin),
+    QC_ABI_MAJOR,
+    QC_ABI_MINOR,
+    .id = "org.example.smooth_field",
+    .version = "1.0",
+    .license = "MIT",
+    .stages = stages,
+};

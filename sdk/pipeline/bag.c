@@ -75,7 +75,8 @@ qc_status qc__bag_take(qc_bag *bag, const char *step, const char *port, const qc
 qc_status qc_bag_put(qc_bag *bag, const char *name, const void *object) {
     const qc_object *o = object;
     if (!name || !*name || !o || !o->type)
-        return qc__fail(bag->ctx, QC_ERR_ARGUMENT, -1, "a bag takes a name and an object with a type");
+        return qc__fail(bag->ctx, QC_ERR_ARGUMENT, -1,
+                        "a bag takes a name and an object with a type");
     return qc__bag_take(bag, NULL, name, qc_object_retain(o));
 }
 
@@ -108,7 +109,9 @@ const void *qc_bag_latest(const qc_bag *bag, const char *type) {
     return NULL;
 }
 
-uint32_t qc_bag_count(const qc_bag *bag) { return (uint32_t)bag->n; }
+uint32_t qc_bag_count(const qc_bag *bag) {
+    return (uint32_t)bag->n;
+}
 
 const char *qc_bag_name(const qc_bag *bag, uint32_t i) {
     return i < bag->n ? bag->item[i].name : NULL;

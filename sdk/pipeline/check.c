@@ -10,8 +10,8 @@ static void list_providers(const qc_registry *registry, const char *type, char *
         const qc_stage *stage = registry->stage[i];
         for (uint32_t o = 0; o < stage->n_out; o++) {
             if (strcmp(stage->out[o].type, type) != 0) continue;
-            const int more = snprintf(text + used, size - used, "%s%s", found++ ? ", " : "",
-                                      stage->id);
+            const int more =
+                snprintf(text + used, size - used, "%s%s", found++ ? ", " : "", stage->id);
             used = used + (size_t)more < size ? used + (size_t)more : size - 1;
             break;
         }
@@ -45,16 +45,17 @@ static qc_status refuse(const qc__scope *scope, uint32_t step, uint32_t port, qc
     if (wire && *wire) {
         const char *type = type_at(scope, step, wire);
         return qc__fail(registry->ctx, QC_ERR_WIRING, step,
-                        "step '%s': input '%s' needs %s, but '%s' is %s%s; provided by: %s", s->name,
-                        in->name, in->type, wire, type ? "of type " : "not there before this step",
-                        type ? type : "", providers);
+                        "step '%s': input '%s' needs %s, but '%s' is %s%s; provided by: %s",
+                        s->name, in->name, in->type, wire,
+                        type ? "of type " : "not there before this step", type ? type : "",
+                        providers);
     }
     return qc__fail(registry->ctx, QC_ERR_WIRING, step,
                     "step '%s': input '%s' needs %s, which %s; provided by: %s", s->name, in->name,
                     in->type,
-                    wire                     ? "is wired to nothing"
-                    : fit == QC__FIT_MAYBE   ? "no earlier step is sure to give"
-                                             : "no earlier step gives",
+                    wire                   ? "is wired to nothing"
+                    : fit == QC__FIT_MAYBE ? "no earlier step is sure to give"
+                                           : "no earlier step gives",
                     providers);
 }
 

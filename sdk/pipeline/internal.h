@@ -13,8 +13,8 @@
 
 /* Checks a stage table built with any compatible header and copies it, its ports and its parameters
  * into `arena` in this header's layout: members the table does not have are zero, texts are never
- * NULL, the range of an enum is 0 .. n-1. Strings stay where they are. Errors: ABI (sizes), ARGUMENT
- * (the text names the stage and what is wrong), NOMEM. */
+ * NULL, the range of an enum is 0 .. n-1. Strings stay where they are. Errors: ABI (sizes),
+ * ARGUMENT (the text names the stage and what is wrong), NOMEM. */
 qc_status qc__table_import(qc_ctx *ctx, qc__arena *arena, const qc_stage *table,
                            const qc_stage **out);
 /* "qc.field" -> "field"; ids without the prefix as they are. */
@@ -27,12 +27,14 @@ char *qc__copy_text(qc_ctx *ctx, const char *text);
 
 /* A block of params_size bytes with the defaults of the table; caller frees. NULL = NOMEM. */
 void *qc__params_create(qc_ctx *ctx, const qc_stage *stage);
-/* Index of a parameter, or -1 with NOT_FOUND and the closest name recorded. `step` is only named. */
+/* Index of a parameter, or -1 with NOT_FOUND and the closest name recorded. `step` is only named.
+ */
 int32_t qc__params_find(qc_ctx *ctx, const qc_stage *stage, const char *step, const char *name);
 /* Text -> value, range-checked. A QC_TEXT member keeps pointing to `text` ("" = NULL). */
 qc_status qc__param_set(qc_ctx *ctx, const qc_param *param, const char *step, void *params,
                         const char *text);
-/* Value -> text: a static or borrowed string, or `number` (64 bytes) filled in. NULL = text not set. */
+/* Value -> text: a static or borrowed string, or `number` (64 bytes) filled in. NULL = text not
+ * set. */
 const char *qc__param_print(const qc_param *param, const void *params, char *number);
 /* Range check of a struct that was filled by hand. */
 qc_status qc__params_check(qc_ctx *ctx, const qc_stage *stage, const char *step,

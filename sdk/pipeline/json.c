@@ -28,14 +28,20 @@ static qc_status check_keys(qc_ctx *ctx, json_t *object, const char *const *know
 /* A JSON scalar as the text qc_pipeline_set takes; NULL for objects, arrays and null. */
 static const char *scalar_text(json_t *value, char *number, size_t size) {
     switch (json_typeof(value)) {
-    case JSON_STRING: return json_string_value(value);
-    case JSON_TRUE: return "true";
-    case JSON_FALSE: return "false";
-    case JSON_REAL: qc__print_double(number, size, json_real_value(value)); return number;
+    case JSON_STRING:
+        return json_string_value(value);
+    case JSON_TRUE:
+        return "true";
+    case JSON_FALSE:
+        return "false";
+    case JSON_REAL:
+        qc__print_double(number, size, json_real_value(value));
+        return number;
     case JSON_INTEGER:
         snprintf(number, size, "%lld", (long long)json_integer_value(value));
         return number;
-    default: return NULL;
+    default:
+        return NULL;
     }
 }
 
@@ -47,7 +53,8 @@ static qc_status parse_params(qc_pipeline *pipeline, const char *step, json_t *p
         if (!text)
             return qc__fail(pipeline->registry->ctx, QC_ERR_ARGUMENT, -1,
                             "pipeline: parameter '%.64s' of step '%s' must be a number, a text or "
-                            "true/false", key, step);
+                            "true/false",
+                            key, step);
         const qc_status status = qc_pipeline_set(pipeline, step, key, text);
         if (status != QC_OK) return status;
     }
@@ -60,9 +67,9 @@ static qc_status parse_wires(qc_pipeline *pipeline, const char *step, json_t *wi
         if (!source)
             return qc__fail(pipeline->registry->ctx, QC_ERR_ARGUMENT, -1,
                             "pipeline: input '%.64s' of step '%s' must name \"step.port\" or an "
-                            "object", json_object_iter_key(it), step);
-        const qc_status status =
-            qc_pipeline_wire(pipeline, step, json_object_iter_key(it), source);
+                            "object",
+                            json_object_iter_key(it), step);
+        const qc_status status = qc_pipeline_wire(pipeline, step, json_object_iter_key(it), source);
         if (status != QC_OK) return status;
     }
     return QC_OK;
@@ -80,7 +87,8 @@ static qc_status parse_step(qc_pipeline *pipeline, json_t *object) {
         (wires && !json_is_object(wires)) || (version && !json_is_string(version)))
         return qc__fail(ctx, QC_ERR_INPUT, -1,
                         "pipeline: %s must be { \"stage\": text, \"as\": text, \"params\": {}, "
-                        "\"in\": {} }", where);
+                        "\"in\": {} }",
+                        where);
     qc_status status = check_keys(ctx, object, known, sizeof known / sizeof *known, where);
     if (status == QC_OK)
         status = qc_pipeline_insert(pipeline, (uint32_t)pipeline->n, json_string_value(as), id);
@@ -88,8 +96,9 @@ static qc_status parse_step(qc_pipeline *pipeline, json_t *object) {
 
     const qc__step *step = &pipeline->step[pipeline->n - 1];
     if (version && strcmp(json_string_value(version), step->stage->version) != 0)
-        qc__log(ctx, QC_LOG_WARNING, "step '%s' was written with version %s of stage %s; this is %s",
-                step->name, json_string_value(version), step->stage->id, step->stage->version);
+        qc__log(ctx, QC_LOG_WARNING,
+                "step '%s' was written with version %s of stage %s; this is %s", step->name,
+                json_string_value(version), step->stage->id, step->stage->version);
     status = parse_params(pipeline, step->name, params);
     return status == QC_OK ? parse_wires(pipeline, step->name, wires) : status;
 }
@@ -97,7 +106,8 @@ static qc_status parse_step(qc_pipeline *pipeline, json_t *object) {
 static qc_status parse_root(qc_pipeline *pipeline, json_t *root) {
     static const char *const known[] = {"qc_pipeline", "stages"};
     qc_ctx *ctx = pipeline->registry->ctx;
-    json_t *format = json_object_get(root, "qc_pipeline"), *stages = json_object_get(root, "stages");
+    json_t *format = json_object_get(root, "qc_pipeline"),
+           *stages = json_object_get(root, "stages");
     if (!json_is_object(root))
         return qc__fail(ctx, QC_ERR_INPUT, -1, "pipeline: the text must be a JSON object");
     const qc_status status = check_keys(ctx, root, known, 2, "the pipeline");
@@ -223,4 +233,6 @@ qc_status qc_pipeline_print(const qc_pipeline *pipeline, char **json) {
     return QC_OK;
 }
 
-void qc_text_free(char *text_to_free) { qc__free(text_to_free); }
+void qc_text_free(char *text_to_free) {
+    qc__free(text_to_free);
+}

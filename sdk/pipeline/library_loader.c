@@ -30,7 +30,8 @@ static qc_status check_table(qc_ctx *ctx, const char *path, const qc_plugin *plu
     if (!plugin)
         return qc__fail(ctx, QC_ERR_ABI, -1,
                         "plugin %s: no symbol " QC_PLUGIN_SYMBOL "; built for another ABI version, "
-                        "or no plugin", path);
+                        "or no plugin",
+                        path);
     if (plugin->struct_size < PLUGIN_MINIMUM || plugin->abi_major != QC_ABI_MAJOR)
         return qc__fail(ctx, QC_ERR_ABI, -1,
                         "plugin %s: ABI %u.%u with a table of %u bytes; this library has ABI %d.%d",

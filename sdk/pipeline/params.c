@@ -11,11 +11,20 @@ static void store(const qc_param *p, void *params, double value) {
     const int64_t i = p->type == QC_INT ? (int64_t)value : 0;
     const int32_t e = p->type == QC_ENUM ? (int32_t)value : 0;
     switch (p->type) {
-    case QC_BOOL: memcpy(member, &b, sizeof b); break;
-    case QC_INT: memcpy(member, &i, sizeof i); break;
-    case QC_REAL: memcpy(member, &value, sizeof value); break;
-    case QC_ENUM: memcpy(member, &e, sizeof e); break;
-    default: break; /* QC_TEXT: NULL from the zeroed block */
+    case QC_BOOL:
+        memcpy(member, &b, sizeof b);
+        break;
+    case QC_INT:
+        memcpy(member, &i, sizeof i);
+        break;
+    case QC_REAL:
+        memcpy(member, &value, sizeof value);
+        break;
+    case QC_ENUM:
+        memcpy(member, &e, sizeof e);
+        break;
+    default:
+        break; /* QC_TEXT: NULL from the zeroed block */
     }
 }
 
@@ -35,21 +44,24 @@ int32_t qc__params_find(qc_ctx *ctx, const qc_stage *stage, const char *step, co
     const char *closest = qc__closest_name(name, names, stage->n_params);
     qc__free(names);
     if (closest)
-        qc__fail(ctx, QC_ERR_NOT_FOUND, -1,
-                 "unknown parameter '%s' of stage '%s' (closest: '%s')", name, step, closest);
+        qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "unknown parameter '%s' of stage '%s' (closest: '%s')",
+                 name, step, closest);
     else
         qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "unknown parameter '%s' of stage '%s'", name, step);
     return -1;
 }
 
-static bool in_range(const qc_param *p, double value) { return value >= p->min && value <= p->max; }
+static bool in_range(const qc_param *p, double value) {
+    return value >= p->min && value <= p->max;
+}
 
 static qc_status refuse_range(qc_ctx *ctx, const qc_param *p, const char *step, const char *text) {
     char lo[64], hi[64];
     qc__print_double(lo, sizeof lo, p->min);
     qc__print_double(hi, sizeof hi, p->max);
-    return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "parameter '%s' of stage '%s' is %s, not in [%s, %s]%s%s",
-                    p->name, step, text, lo, hi, *p->unit ? " " : "", p->unit);
+    return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
+                    "parameter '%s' of stage '%s' is %s, not in [%s, %s]%s%s", p->name, step, text,
+                    lo, hi, *p->unit ? " " : "", p->unit);
 }
 
 static qc_status refuse_text(qc_ctx *ctx, const qc_param *p, const char *step, const char *text,
@@ -120,11 +132,17 @@ qc_status qc__param_set(qc_ctx *ctx, const qc_param *param, const char *step, vo
                         const char *text) {
     const char *member = *text ? text : NULL;
     switch (param->type) {
-    case QC_BOOL: return set_bool(ctx, param, step, params, text);
-    case QC_INT: return set_int(ctx, param, step, params, text);
-    case QC_REAL: return set_real(ctx, param, step, params, text);
-    case QC_ENUM: return set_enum(ctx, param, step, params, text);
-    default: memcpy((char *)params + param->offset, &member, sizeof member); return QC_OK;
+    case QC_BOOL:
+        return set_bool(ctx, param, step, params, text);
+    case QC_INT:
+        return set_int(ctx, param, step, params, text);
+    case QC_REAL:
+        return set_real(ctx, param, step, params, text);
+    case QC_ENUM:
+        return set_enum(ctx, param, step, params, text);
+    default:
+        memcpy((char *)params + param->offset, &member, sizeof member);
+        return QC_OK;
     }
 }
 
@@ -135,7 +153,9 @@ const char *qc__param_print(const qc_param *param, const void *params, char *num
     int32_t e;
     double r;
     switch (param->type) {
-    case QC_BOOL: memcpy(&b, member, sizeof b); return b ? "true" : "false";
+    case QC_BOOL:
+        memcpy(&b, member, sizeof b);
+        return b ? "true" : "false";
     case QC_INT:
         memcpy(&i, member, sizeof i);
         snprintf(number, 64, "%lld", (long long)i);
@@ -144,8 +164,12 @@ const char *qc__param_print(const qc_param *param, const void *params, char *num
         memcpy(&r, member, sizeof r);
         qc__print_double(number, 64, r);
         return number;
-    case QC_ENUM: memcpy(&e, member, sizeof e); return param->choices[e];
-    default: memcpy(&text, member, sizeof text); return text;
+    case QC_ENUM:
+        memcpy(&e, member, sizeof e);
+        return param->choices[e];
+    default:
+        memcpy(&text, member, sizeof text);
+        return text;
     }
 }
 

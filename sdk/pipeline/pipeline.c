@@ -60,8 +60,8 @@ qc_status qc_pipeline_insert(qc_pipeline *pipeline, uint32_t at, const char *ste
     if (status != QC_OK) return status;
     const char *name = step ? step : qc__short_id(stage->id);
     if (at > pipeline->n)
-        return qc__fail(registry->ctx, QC_ERR_ARGUMENT, -1, "position %u in a pipeline of %lld steps",
-                        at, (long long)pipeline->n);
+        return qc__fail(registry->ctx, QC_ERR_ARGUMENT, -1,
+                        "position %u in a pipeline of %lld steps", at, (long long)pipeline->n);
     if (!qc__is_name(name, "._-"))
         return qc__fail(registry->ctx, QC_ERR_ARGUMENT, -1,
                         "step name '%.64s': use up to 63 letters, digits and . _ -", name);
@@ -159,7 +159,9 @@ qc_status qc_pipeline_wire(qc_pipeline *pipeline, const char *step, const char *
     return status;
 }
 
-uint32_t qc_pipeline_count(const qc_pipeline *pipeline) { return (uint32_t)pipeline->n; }
+uint32_t qc_pipeline_count(const qc_pipeline *pipeline) {
+    return (uint32_t)pipeline->n;
+}
 
 const char *qc_pipeline_step_name(const qc_pipeline *pipeline, uint32_t i) {
     return i < pipeline->n ? pipeline->step[i].name : NULL;

@@ -14,8 +14,8 @@ qc_status qc_registry_create(qc_ctx *ctx, qc_registry **out) {
     qc_registry *r = QC__ZERO(ctx, qc_registry, 1);
     if (!r) return QC_ERR_NOMEM;
     r->ctx = ctx;
-    r->host = (qc_host){sizeof r->host, QC_ABI_MAJOR, QC_ABI_MINOR, "quadcover", qc_version(), NULL,
-                        get_interface};
+    r->host = (qc_host){sizeof r->host, QC_ABI_MAJOR, QC_ABI_MINOR, "quadcover",
+                        qc_version(),   NULL,         get_interface};
     r->arena = qc__arena_create(ctx);
     qc_status status = r->arena ? QC_OK : QC_ERR_NOMEM;
     for (size_t i = 0; status == QC_OK && qc__builtin_stages[i]; i++)
@@ -67,7 +67,9 @@ qc_status qc_registry_add(qc_registry *registry, const qc_stage *stage) {
     return status == QC_OK ? qc__registry_commit(registry, &copy, 1) : status;
 }
 
-uint32_t qc_registry_count(const qc_registry *registry) { return (uint32_t)registry->n; }
+uint32_t qc_registry_count(const qc_registry *registry) {
+    return (uint32_t)registry->n;
+}
 
 const qc_stage *qc_registry_stage(const qc_registry *registry, uint32_t i) {
     return i < registry->n ? registry->stage[i] : NULL;

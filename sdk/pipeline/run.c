@@ -54,8 +54,8 @@ static qc_status run_fail(const qc_run *run, qc_status status, int64_t where, co
 
 /* Runs the stage inside the current range; checks that it kept its promises. */
 static qc_status invoke(const call *c, const void *params) {
-    const qc_run run = {sizeof run, (void *)(uintptr_t)c, c->ctx, run_input, run_output,
-                        run_progress, run_log, run_fail};
+    const qc_run run = {sizeof run, (void *)(uintptr_t)c, c->ctx,  run_input,
+                        run_output, run_progress,         run_log, run_fail};
     if (!qc__progress(c->ctx, 0.0)) return QC_ERR_CANCELLED;
     qc__clear_error(c->ctx);
     const qc_status status = c->stage->run(&run, params);
@@ -66,8 +66,9 @@ static qc_status invoke(const call *c, const void *params) {
     }
     for (uint32_t i = 0; i < c->stage->n_out; i++)
         if (!c->output[i] && !(c->stage->out[i].flags & QC_PORT_OPTIONAL))
-            return qc__fail(c->ctx, QC_ERR_FAILED, -1, "stage '%s' did not give its output '%s' (%s)",
-                            c->name, c->stage->out[i].name, c->stage->out[i].type);
+            return qc__fail(c->ctx, QC_ERR_FAILED, -1,
+                            "stage '%s' did not give its output '%s' (%s)", c->name,
+                            c->stage->out[i].name, c->stage->out[i].type);
     return qc__progress(c->ctx, 1.0) ? QC_OK : QC_ERR_CANCELLED;
 }
 
@@ -151,8 +152,8 @@ static qc_status find_inputs(const call *c, const qc_bag *io) {
     for (uint32_t p = 0; p < c->stage->n_in; p++) {
         const qc_port *in = &c->stage->in[p];
         const qc_object *named = qc_bag_get(io, in->name);
-        c->input[p] = named && strcmp(named->type, in->type) == 0 ? named
-                                                                  : qc_bag_latest(io, in->type);
+        c->input[p] =
+            named && strcmp(named->type, in->type) == 0 ? named : qc_bag_latest(io, in->type);
         if (!c->input[p] && !(in->flags & QC_PORT_OPTIONAL))
             return qc__fail(c->ctx, QC_ERR_WIRING, -1,
                             "stage '%s': input '%s' needs %s, which is not in the bag", c->name,

@@ -12,7 +12,9 @@ enum {
     STRIDE_MAXIMUM = 1 << 12
 };
 
-const char *qc__short_id(const char *id) { return strncmp(id, "qc.", 3) == 0 ? id + 3 : id; }
+const char *qc__short_id(const char *id) {
+    return strncmp(id, "qc.", 3) == 0 ? id + 3 : id;
+}
 
 bool qc__is_name(const char *text, const char *extra) {
     if (!text) return false;
@@ -67,14 +69,18 @@ static qc_status check_ports(qc_ctx *ctx, const char *id, qc_port *port, uint32_
 }
 
 static size_t size_of_type(int32_t type) {
-    static const size_t size[] = {0, sizeof(bool), sizeof(int64_t), sizeof(double), sizeof(int32_t),
-                                  sizeof(const char *)};
+    static const size_t size[] = {
+        0, sizeof(bool), sizeof(int64_t), sizeof(double), sizeof(int32_t), sizeof(const char *)};
     return type >= QC_BOOL && type <= QC_TEXT ? size[type] : 0;
 }
 
 static size_t alignment_of_type(int32_t type) {
-    static const size_t alignment[] = {1, alignof(bool), alignof(int64_t), alignof(double),
-                                       alignof(int32_t), alignof(const char *)};
+    static const size_t alignment[] = {1,
+                                       alignof(bool),
+                                       alignof(int64_t),
+                                       alignof(double),
+                                       alignof(int32_t),
+                                       alignof(const char *)};
     return alignment[type];
 }
 
@@ -132,8 +138,8 @@ static qc_status check_head(qc_ctx *ctx, const qc_stage *s) {
     if (!stride_fits(s->port_size, PORT_MINIMUM, s->n_in + s->n_out) ||
         !stride_fits(s->param_size, PARAM_MINIMUM, s->n_params))
         return qc__fail(ctx, QC_ERR_ABI, -1,
-                        "stage '%s': port_size %u or param_size %u does not fit this library", s->id,
-                        s->port_size, s->param_size);
+                        "stage '%s': port_size %u or param_size %u does not fit this library",
+                        s->id, s->port_size, s->param_size);
     const char *wrong = NULL;
     if (s->n_in > 1000 || s->n_out > 1000 || s->n_params > 1000 || s->params_size > 1 << 20)
         wrong = "has implausible counts";
@@ -158,7 +164,8 @@ qc_status qc__table_import(qc_ctx *ctx, qc__arena *arena, const qc_stage *table,
 
     qc_port *in = copy_array(ctx, arena, s->in, s->n_in, s->port_size, sizeof *in);
     qc_port *outputs = copy_array(ctx, arena, s->out, s->n_out, s->port_size, sizeof *outputs);
-    qc_param *params = copy_array(ctx, arena, s->params, s->n_params, s->param_size, sizeof *params);
+    qc_param *params =
+        copy_array(ctx, arena, s->params, s->n_params, s->param_size, sizeof *params);
     if (!in || !outputs || !params) return QC_ERR_NOMEM;
     if ((status = check_ports(ctx, s->id, in, s->n_in)) != QC_OK ||
         (status = check_ports(ctx, s->id, outputs, s->n_out)) != QC_OK ||

@@ -87,7 +87,8 @@ AT(qc_plugin, extension, 64);
 
 _Static_assert(sizeof(qc_status) == 4, "fixed width");
 _Static_assert(QC_ERR_UNSUPPORTED == -12 && QC_ERR_ABI == -6, "statuses are never renumbered");
-_Static_assert(QC_BOOL == 1 && QC_INT == 2 && QC_REAL == 3 && QC_ENUM == 4 && QC_TEXT == 5, "types");
+_Static_assert(QC_BOOL == 1 && QC_INT == 2 && QC_REAL == 3 && QC_ENUM == 4 && QC_TEXT == 5,
+               "types");
 _Static_assert(QC_LOG_DEBUG == 0 && QC_LOG_ERROR == 3, "levels");
 
 static void the_plugin_symbol_carries_the_major_version(void **state) {

@@ -110,7 +110,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(longer_tables_are_cut_to_this_header, setup, teardown),
         cmocka_unit_test_setup_teardown(plugins_are_opened_once_and_closed_with_the_registry, setup,
                                         teardown),
-        cmocka_unit_test_setup_teardown(foreign_libraries_are_refused_and_left_alone, setup, teardown),
+        cmocka_unit_test_setup_teardown(foreign_libraries_are_refused_and_left_alone, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(one_bad_stage_refuses_the_whole_plugin, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

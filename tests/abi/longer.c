@@ -1,4 +1,5 @@
-/* A plugin built with a later header of the same major version: every struct has grown at its end. */
+/* A plugin built with a later header of the same major version: every struct has grown at its end.
+ */
 #include <qc/plugin.h>
 
 typedef struct long_port {
@@ -50,7 +51,9 @@ static const long_stage stage = {{sizeof(long_stage), sizeof(long_port), sizeof(
                                   sizeof(options), run},
                                  NULL};
 static const qc_stage *const list[] = {&stage.stage, NULL};
-static const qc_stage *const *stages(void) { return list; }
+static const qc_stage *const *stages(void) {
+    return list;
+}
 
 static qc_status open(const qc_host *host) {
     opened++;
@@ -58,9 +61,11 @@ static qc_status open(const qc_host *host) {
                  host->get_interface(host, "org.test.nothing/1") == NULL;
     return QC_OK;
 }
-static void close(void) { closed++; }
+static void close(void) {
+    closed++;
+}
 
-QC_PLUGIN_EXPORT const long_plugin qc_plugin_1 = {
-    {sizeof(long_plugin), QC_ABI_MAJOR, 7, "org.test.longer", "1", "MIT", "", open, close, stages,
-     NULL},
-    NULL};
+QC_PLUGIN_EXPORT const long_plugin qc_plugin_1 = {{sizeof(long_plugin), QC_ABI_MAJOR, 7,
+                                                   "org.test.longer", "1", "MIT", "", open, close,
+                                                   stages, NULL},
+                                                  NULL};

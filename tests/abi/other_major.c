@@ -13,6 +13,14 @@ static const qc_stage *const *stages(void) {
     return NULL;
 }
 
-QC_PLUGIN_EXPORT const qc_plugin qc_plugin_1 = {
-    sizeof(qc_plugin), QC_ABI_MAJOR + 1, 0, "org.test.other_major", "1", "MIT", "", open, NULL,
-    stages, NULL};
+QC_PLUGIN_EXPORT const qc_plugin qc_plugin_1 = {sizeof(qc_plugin),
+                                                QC_ABI_MAJOR + 1,
+                                                0,
+                                                "org.test.other_major",
+                                                "1",
+                                                "MIT",
+                                                "",
+                                                open,
+                                                NULL,
+                                                stages,
+                                                NULL};

@@ -47,13 +47,34 @@ static const short_port out[] = {{"first", "test.label/1", QC_PORT_OPTIONAL},
                                  {"second", "test.number/1", 0}};
 static const short_param params[] = {{"factor", QC_REAL, 0, 2, 0, 10, NULL},
                                      {"count", QC_INT, 8, 5, 0, 9, NULL}};
-static const qc_stage stage = {sizeof(qc_stage), sizeof(short_port), sizeof(short_param),
-                               "org.test.shorter", "1", "built with a shorter header", "", "",
-                               (const qc_port *)in, (const qc_port *)out, 1, 2,
-                               (const qc_param *)params, 2, sizeof(options), run};
+static const qc_stage stage = {sizeof(qc_stage),
+                               sizeof(short_port),
+                               sizeof(short_param),
+                               "org.test.shorter",
+                               "1",
+                               "built with a shorter header",
+                               "",
+                               "",
+                               (const qc_port *)in,
+                               (const qc_port *)out,
+                               1,
+                               2,
+                               (const qc_param *)params,
+                               2,
+                               sizeof(options),
+                               run};
 static const qc_stage *const list[] = {&stage, NULL};
-static const qc_stage *const *stages(void) { return list; }
+static const qc_stage *const *stages(void) {
+    return list;
+}
 
-QC_PLUGIN_EXPORT const short_plugin qc_plugin_1 = {
-    sizeof(short_plugin), QC_ABI_MAJOR, QC_ABI_MINOR, "org.test.shorter", "1", "MIT", "",
-    NULL, NULL, stages};
+QC_PLUGIN_EXPORT const short_plugin qc_plugin_1 = {sizeof(short_plugin),
+                                                   QC_ABI_MAJOR,
+                                                   QC_ABI_MINOR,
+                                                   "org.test.shorter",
+                                                   "1",
+                                                   "MIT",
+                                                   "",
+                                                   NULL,
+                                                   NULL,
+                                                   stages};

@@ -1,7 +1,10 @@
 /* qc/plugin.h - the one symbol a plugin exports. Everything optional is found by id.
  *
- * A plugin is a shared library which defines `const qc_plugin qc_plugin_1`. The host reads the table
- * before any code runs, checks abi_major and the sizes, then calls open. */
+ * A plugin is a shared library which defines `const qc_plugin qc_plugin_1`, its only exported name.
+ * The host reads the table before it calls any function, checks abi_major and the sizes, then calls
+ * open and stages. Each registry which loads the library calls open once, and close when freed. A
+ * plugin that calls functions of the SDK links QuadCover::quadcover; others need the headers only.
+ * Thread rule: all functions are called on the thread of the registry's context. */
 #ifndef QC_PLUGIN_H
 #define QC_PLUGIN_H
 
@@ -11,25 +14,25 @@
 extern "C" {
 #endif
 
-#define QC_ABI_MAJOR 1 /* bump = new symbol name below; old plugins are not found, not crashed       */
-#define QC_ABI_MINOR 0 /* bump = members appended; struct_size says which exist                     */
+#define QC_ABI_MAJOR 1 /* bump = new symbol name below; old plugins are not found, not crashed    */
+#define QC_ABI_MINOR 0 /* bump = members appended; struct_size says which exist                   */
 
 typedef struct qc_host {
     uint32_t struct_size;
     uint16_t abi_major, abi_minor;
     const char *name, *version;
     void *host_data;
-    const void *(*get_interface)(const struct qc_host *host, const char *id); /* NULL = absent      */
+    const void *(*get_interface)(const struct qc_host *host, const char *id); /* NULL = absent    */
 } qc_host;
 
 typedef struct qc_plugin {
     uint32_t struct_size;
     uint16_t abi_major, abi_minor;
     const char *id, *version, *license, *url;
-    qc_status (*open)(const qc_host *host); /* NULL = nothing to do; may refuse (QC_ERR_ABI)         */
-    void (*close)(void);                    /* NULL = nothing to do; not called after a refusal      */
-    const qc_stage *const *(*stages)(void); /* NULL-terminated, static for the life of the library   */
-    const void *(*extension)(const char *id);
+    qc_status (*open)(const qc_host *host); /* NULL = nothing to do; may refuse (QC_ERR_ABI)      */
+    void (*close)(void);                    /* NULL = nothing to do; not called after a refusal   */
+    const qc_stage *const *(*stages)(void); /* NULL-terminated, as long-lived as the library */
+    const void *(*extension)(const char *id); /* NULL = none; for later needs, found by id        */
 } qc_plugin;
 
 /* The definition in the plugin: QC_PLUGIN_EXPORT const qc_plugin qc_plugin_1 = { ... }; */

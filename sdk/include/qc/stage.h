@@ -12,14 +12,16 @@
 extern "C" {
 #endif
 
+/* Names of ports and parameters are made of letters, digits, _ and -; ids also of dots. All strings
+ * of a table live as long as the table. */
 enum { QC_PORT_OPTIONAL = 1 };
 typedef struct qc_port {
-    const char *name, *type; /* "field", "qc.face_field/1"                                         */
-    uint32_t flags;          /* QC_PORT_OPTIONAL: may be unwired (in) or absent (out)               */
+    const char *name, *type; /* "field", "qc.face_field/1"                                        */
+    uint32_t flags;          /* QC_PORT_OPTIONAL: may be unwired (in) or absent (out)             */
     const char *doc;
 } qc_port;
 
-enum { QC_BOOL = 1, QC_INT, QC_REAL, QC_ENUM, QC_TEXT }; /* qc_param.type                          */
+enum { QC_BOOL = 1, QC_INT, QC_REAL, QC_ENUM, QC_TEXT }; /* qc_param.type                         */
 
 /* One parameter: enough for a command line flag, a Python keyword and a row of documentation. The
  * member at `offset` of the stage's params struct is a bool, int64_t, double, int32_t (position in
@@ -28,9 +30,10 @@ typedef struct qc_param {
     const char *name;
     int32_t type;
     uint32_t offset;
-    double def, min, max;       /* bool: 0/1; enum: position; text: ignored                         */
-    const char *const *choices; /* QC_ENUM: NULL-terminated names                                   */
-    const char *unit, *doc;     /* "deg", "edge" (= mean edge length), "" for pure numbers           */
+    double def, min, max;       /* def in [min, max], may be infinite; bool: 0/1; enum: def is a
+                                   position, min and max ignored; text: all ignored               */
+    const char *const *choices; /* QC_ENUM: NULL-terminated names                                 */
+    const char *unit, *doc;     /* "deg", "edge" (= mean edge length), "" for pure numbers        */
 } qc_param;
 
 #define QC_PARAM_BOOL(S, field, def, doc) \
@@ -57,22 +60,24 @@ typedef struct qc_run {
     /* fraction of this stage; false: clean up and return QC_ERR_CANCELLED. */
     bool (*progress)(const struct qc_run *run, double fraction);
     void (*log)(const struct qc_run *run, int32_t level, const char *text);
-    /* Records the error text (one line) and returns status. */
+    /* Records the error text (one line; which element, what to do) and returns status. Call it as
+     * (run->fail)(...) where a macro `fail` is about. */
     qc_status (*fail)(const struct qc_run *run, qc_status status, int64_t where, const char *text);
 } qc_run;
 
 typedef struct qc_stage {
-    uint32_t struct_size, port_size, param_size; /* strides: tables of older headers still read      */
-    const char *id, *version; /* "qc.hodge", "1.0"; both recorded in every result                  */
-    const char *brief;        /* one line                                                           */
-    const char *doc;          /* paragraphs                                                         */
-    const char *cite;         /* source: "thesis 4.1, eq. (6.1)"                                     */
+    uint32_t struct_size, port_size, param_size; /* QC_STAGE_SIZES: older tables still read       */
+    const char *id, *version; /* "qc.hodge", "1.0"; both recorded in every result                 */
+    const char *brief;        /* one line                                                         */
+    const char *doc;          /* paragraphs                                                       */
+    const char *cite;         /* source: "thesis 4.1, eq. (6.1)"                                  */
     const qc_port *in, *out;
     uint32_t n_in, n_out;
     const qc_param *params;
-    uint32_t n_params, params_size; /* params_size = sizeof the params struct                       */
+    uint32_t n_params, params_size; /* params_size = sizeof the params struct                     */
     /* Success requires that every non-optional output was published. On error nothing published
-     * counts. params points to a filled, range-checked struct. */
+     * counts. params points to a filled, range-checked struct. Inputs are immutable; the stage owns
+     * nothing but what it makes, and keeps no pointer after it returns. */
     qc_status (*run)(const qc_run *run, const void *params);
 } qc_stage;
 #define QC_STAGE_SIZES sizeof(qc_stage), sizeof(qc_port), sizeof(qc_param)

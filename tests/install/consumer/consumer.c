@@ -14,7 +14,8 @@ int main(int argc, char **argv) {
     }
     printf("%s\n", qc_version());
     for (uint32_t i = 0; i < qc_registry_count(registry); i++)
-        printf("%s %s\n", qc_registry_stage(registry, i)->id, qc_registry_stage(registry, i)->version);
+        printf("%s %s\n", qc_registry_stage(registry, i)->id,
+               qc_registry_stage(registry, i)->version);
     qc_registry_free(registry);
     qc_ctx_free(ctx);
     return 0;

@@ -6,7 +6,9 @@ typedef struct thing {
     int *destroyed;
 } thing;
 
-static void destroy(qc_object *o) { ++*((thing *)o)->destroyed; }
+static void destroy(qc_object *o) {
+    ++*((thing *)o)->destroyed;
+}
 
 static void the_last_release_destroys(void **state) {
     (void)state;

@@ -31,7 +31,8 @@ static double run(uint32_t threads, int64_t n) {
     j->ctx = ctx;
     for (int round = 1; round <= 20; round++) {
         qc__parallel_for(ctx, n, CHUNK, body, j);
-        for (int64_t i = 0; i < N; i++) assert_int_equal(atomic_load(&j->seen[i]), i < n ? round : 0);
+        for (int64_t i = 0; i < N; i++)
+            assert_int_equal(atomic_load(&j->seen[i]), i < n ? round : 0);
     }
     assert_int_equal(atomic_load(&j->bad), 0);
     double sum = 0;
@@ -63,8 +64,7 @@ static void inner_body(void *arg, int64_t begin, int64_t end, uint32_t worker) {
 static void outer_body(void *arg, int64_t begin, int64_t end, uint32_t worker) {
     nest *n = arg;
     (void)worker;
-    for (int64_t i = begin; i < end; i++)
-        qc__parallel_for(n->ctx, 50, 7, inner_body, &n->inner[i]);
+    for (int64_t i = begin; i < end; i++) qc__parallel_for(n->ctx, 50, 7, inner_body, &n->inner[i]);
 }
 
 static void nested_loops_do_all_their_work(void **state) {

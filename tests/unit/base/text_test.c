@@ -7,8 +7,8 @@
 static void the_closest_name_is_found(void **state) {
     (void)state;
     static const char *const names[] = {"qc.field.smooth", "qc.hodge", "lambda", "alignment", "k"};
-    static const char *const table[][2] = {{"lamda", "lambda"},  {"LAMBDA", NULL},
-                                           {"hodge", "qc.hodge"}, {"smoth", "qc.field.smooth"},
+    static const char *const table[][2] = {{"lamda", "lambda"},       {"LAMBDA", NULL},
+                                           {"hodge", "qc.hodge"},     {"smoth", "qc.field.smooth"},
                                            {"alinment", "alignment"}, {"zzzzzz", NULL},
                                            {"qc.hogde", "qc.hodge"}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
@@ -37,8 +37,21 @@ static void check_round_trip(double value) {
 }
 
 static void round_trips(void) {
-    static const double some[] = {0, 0.1, 1.0 / 3, -2.5, 1e300, DBL_MIN, DBL_MAX, DBL_TRUE_MIN, 1e-7,
-                                  123456789.125, 1e15, 1e16, 12345678901234567.0, 5e-324, INFINITY};
+    static const double some[] = {0,
+                                  0.1,
+                                  1.0 / 3,
+                                  -2.5,
+                                  1e300,
+                                  DBL_MIN,
+                                  DBL_MAX,
+                                  DBL_TRUE_MIN,
+                                  1e-7,
+                                  123456789.125,
+                                  1e15,
+                                  1e16,
+                                  12345678901234567.0,
+                                  5e-324,
+                                  INFINITY};
     uint64_t x = 88172645463325252u;
     for (size_t i = 0; i < sizeof some / sizeof *some; i++) check_round_trip(some[i]);
     for (int i = 0; i < 2000; i++) {

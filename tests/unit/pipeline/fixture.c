@@ -30,8 +30,9 @@ static const qc_param make_params[] = {
     QC_PARAM_ENUM(kinds, mode, 1, modes, "a mode"),
     QC_PARAM_TEXT(kinds, name, "a name"),
 };
-const qc_stage stage_make = {QC_STAGE_SIZES, "qc.make", "1.0", "makes a number", "", "",
-                             NULL, make_out, 0, 1, make_params, 5, sizeof(kinds), run_make};
+const qc_stage stage_make = {
+    QC_STAGE_SIZES, "qc.make", "1.0",         "makes a number", "", "", NULL, make_out, 0, 1,
+    make_params,    5,         sizeof(kinds), run_make};
 
 typedef struct add_options {
     double amount;
@@ -47,8 +48,9 @@ static qc_status run_add(const qc_run *run, const void *params) {
 static const qc_port add_in[] = {{"number", NUMBER, 0, ""}, {"more", LABEL, QC_PORT_OPTIONAL, ""}};
 static const qc_param add_params[] = {
     QC_PARAM_REAL(add_options, amount, 1, -1e30, 1e30, "", "what to add")};
-const qc_stage stage_add = {QC_STAGE_SIZES, "qc.add", "1.0", "adds", "", "", add_in, make_out, 2, 1,
-                            add_params, 1, sizeof(add_options), run_add};
+const qc_stage stage_add = {
+    QC_STAGE_SIZES,      "qc.add", "1.0", "adds", "", "", add_in, make_out, 2, 1, add_params, 1,
+    sizeof(add_options), run_add};
 
 typedef struct tag_options {
     bool extra;
@@ -59,11 +61,22 @@ static qc_status run_tag(const qc_run *run, const void *params) {
     if (status != QC_OK || !((const tag_options *)params)->extra) return status;
     return run->output(run, "extra", number_create(NUMBER, -a->value));
 }
-static const qc_port tag_out[] = {{"label", LABEL, 0, ""},
-                                  {"extra", NUMBER, QC_PORT_OPTIONAL, ""}};
+static const qc_port tag_out[] = {{"label", LABEL, 0, ""}, {"extra", NUMBER, QC_PORT_OPTIONAL, ""}};
 static const qc_param tag_params[] = {QC_PARAM_BOOL(tag_options, extra, false, "")};
-const qc_stage stage_tag = {QC_STAGE_SIZES, "org.test.tag", "2.5", "tags", "", "", add_in, tag_out,
-                            1, 2, tag_params, 1, sizeof(tag_options), run_tag};
+const qc_stage stage_tag = {QC_STAGE_SIZES,
+                            "org.test.tag",
+                            "2.5",
+                            "tags",
+                            "",
+                            "",
+                            add_in,
+                            tag_out,
+                            1,
+                            2,
+                            tag_params,
+                            1,
+                            sizeof(tag_options),
+                            run_tag};
 
 static qc_status run_read(const qc_run *run, const void *params) {
     (void)params;
@@ -71,8 +84,8 @@ static qc_status run_read(const qc_run *run, const void *params) {
     return run->output(run, "number", number_create(NUMBER, a->value));
 }
 static const qc_port read_in[] = {{"label", LABEL, 0, ""}};
-const qc_stage stage_read = {QC_STAGE_SIZES, "qc.read", "1.0", "reads", "", "", read_in, make_out,
-                             1, 1, NULL, 0, 0, run_read};
+const qc_stage stage_read = {QC_STAGE_SIZES, "qc.read", "1.0", "reads", "", "", read_in,
+                             make_out,       1,         1,     NULL,    0,  0,  run_read};
 
 typedef struct bad_options {
     int32_t how;
@@ -90,10 +103,11 @@ static qc_status run_bad(const qc_run *run, const void *params) {
     return status;
 }
 static const qc_param bad_params[] = {QC_PARAM_ENUM(bad_options, how, 0, ways, "")};
-const qc_stage stage_bad = {QC_STAGE_SIZES, "qc.bad", "1.0", "fails", "", "", add_in, make_out, 1, 1,
-                            bad_params, 1, sizeof(bad_options), run_bad};
+const qc_stage stage_bad = {
+    QC_STAGE_SIZES,      "qc.bad", "1.0", "fails", "", "", add_in, make_out, 1, 1, bad_params, 1,
+    sizeof(bad_options), run_bad};
 
-const qc_stage *const qc__builtin_stages[] = {&stage_make, &stage_add,  &stage_tag,
+const qc_stage *const qc__builtin_stages[] = {&stage_make, &stage_add, &stage_tag,
                                               &stage_read, &stage_bad, NULL};
 
 static void *counted_resize(void *user, void *p, size_t old_size, size_t new_size) {
@@ -159,4 +173,6 @@ double value_of(const qc_bag *bag, const char *name) {
     return n->value;
 }
 
-const char *error_text(const fixture *f) { return qc_ctx_error(f->ctx)->text; }
+const char *error_text(const fixture *f) {
+    return qc_ctx_error(f->ctx)->text;
+}

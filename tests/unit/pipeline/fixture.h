@@ -39,15 +39,15 @@ typedef struct fixture {
     qc_registry *registry;
     qc_pipeline *pipeline;
     qc_bag *bag;
-    int64_t allowed;    /* allocations which succeed before one fails; < 0 = all do */
-    int64_t blocks;     /* not yet freed */
-    double cancel_at;   /* progress from which the callback says stop */
-    double last;        /* last fraction seen */
-    bool backwards;     /* a fraction was below the one before it */
-    char trace[512];    /* stage names in the order in which they reported */
+    int64_t allowed;  /* allocations which succeed before one fails; < 0 = all do */
+    int64_t blocks;   /* not yet freed */
+    double cancel_at; /* progress from which the callback says stop */
+    double last;      /* last fraction seen */
+    bool backwards;   /* a fraction was below the one before it */
+    char trace[512];  /* stage names in the order in which they reported */
     char logged[256];
 } fixture;
-int setup(void **state);    /* a context, the registry with the stages above, empty pipeline and bag */
+int setup(void **state); /* a context, the registry with the stages above, empty pipeline and bag */
 int teardown(void **state); /* also checks that no block and no object is left */
 double value_of(const qc_bag *bag, const char *name);
 const char *error_text(const fixture *f);

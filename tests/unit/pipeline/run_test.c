@@ -48,11 +48,14 @@ static void failing_stages_are_named(void **state) {
     } table[] = {
         {"text", QC_ERR_FAILED, 7, "face 7 is folded"},
         {"silent", QC_ERR_NOT_POSDEF, -1, "stage 'trial' failed: not positive definite"},
-        {"nothing", QC_ERR_FAILED, -1, "stage 'trial' did not give its output 'number' (test.number/1)"},
-        {"type", QC_ERR_ARGUMENT, -1, "stage 'trial' publishes an object of type test.label/1 on "
-                                      "output 'number' of type test.number/1"},
-        {"port", QC_ERR_ARGUMENT, -1, "stage 'trial' publishes an object of type test.number/1 on "
-                                      "output 'nowhere', which it does not have"},
+        {"nothing", QC_ERR_FAILED, -1,
+         "stage 'trial' did not give its output 'number' (test.number/1)"},
+        {"type", QC_ERR_ARGUMENT, -1,
+         "stage 'trial' publishes an object of type test.label/1 on "
+         "output 'number' of type test.number/1"},
+        {"port", QC_ERR_ARGUMENT, -1,
+         "stage 'trial' publishes an object of type test.number/1 on "
+         "output 'nowhere', which it does not have"},
     };
     fixture *f = *state;
     build(f);
@@ -93,8 +96,9 @@ static void any_allocation_may_fail(void **state) {
 }
 
 static void building_survives_failing_allocations(void **state) {
-    static const char json[] = "{\"qc_pipeline\":1,\"stages\":[{\"stage\":\"make\",\"params\":"
-                               "{\"name\":\"x\"}},{\"stage\":\"add\",\"in\":{\"number\":\"make.number\"}}]}";
+    static const char json[] =
+        "{\"qc_pipeline\":1,\"stages\":[{\"stage\":\"make\",\"params\":"
+        "{\"name\":\"x\"}},{\"stage\":\"add\",\"in\":{\"number\":\"make.number\"}}]}";
     fixture *f = *state;
     for (int64_t n = 0;; n++) {
         qc_registry *registry = NULL;

@@ -79,8 +79,9 @@ static void texts_are_never_null(void **state) {
     fixture *f = *state;
     const qc_port port = {"number", NUMBER, 0, NULL};
     const qc_param param = {"a", QC_ENUM, 0, 1, 0, 0, modes, NULL, NULL};
-    const qc_stage s = {QC_STAGE_SIZES, "org.test.bare", NULL, NULL, NULL, NULL, &port, NULL,
-                        1, 0, &param, 1, 4, stage_bad.run};
+    const qc_stage s = {
+        QC_STAGE_SIZES, "org.test.bare", NULL, NULL, NULL, NULL, &port, NULL, 1, 0, &param, 1, 4,
+        stage_bad.run};
     const qc_stage *found;
     assert_int_equal(qc_registry_add(f->registry, &s), QC_OK);
     assert_int_equal(qc_registry_find(f->registry, "org.test.bare", &found), QC_OK);

@@ -2,7 +2,8 @@
 #include "tests/unit/pipeline/fixture.h"
 
 static void step(fixture *f, const char *name, const char *id) {
-    assert_int_equal(qc_pipeline_insert(f->pipeline, qc_pipeline_count(f->pipeline), name, id), QC_OK);
+    assert_int_equal(qc_pipeline_insert(f->pipeline, qc_pipeline_count(f->pipeline), name, id),
+                     QC_OK);
 }
 static void put(fixture *f, const char *name, const char *type, double value) {
     number *n = number_create(type, value);
@@ -58,25 +59,30 @@ static void an_optional_input_can_be_left_unwired(void **state) {
     assert_int_equal(qc_pipeline_run(f->pipeline, f->bag), QC_OK);
     assert_true(value_of(f->bag, "add.number") == 2);
     assert_int_equal(qc_pipeline_wire(f->pipeline, "add", "number", ""), QC_OK);
-    refused(f, 0, "add", "step 'add': input 'number' needs test.number/1, which is wired to nothing; "
-                         "provided by: qc.make, qc.add, org.test.tag, qc.read, qc.bad");
+    refused(f, 0, "add",
+            "step 'add': input 'number' needs test.number/1, which is wired to nothing; "
+            "provided by: qc.make, qc.add, org.test.tag, qc.read, qc.bad");
 }
 
 static void unmet_ports_are_refused_before_anything_runs(void **state) {
     fixture *f = *state;
     step(f, NULL, "make");
     step(f, NULL, "read");
-    refused(f, 1, "read", "step 'read': input 'label' needs test.label/1, which no earlier step "
-                          "gives; provided by: org.test.tag");
+    refused(f, 1, "read",
+            "step 'read': input 'label' needs test.label/1, which no earlier step "
+            "gives; provided by: org.test.tag");
     step(f, "late", "org.test.tag"); /* after it does not help */
-    refused(f, 1, "read", "step 'read': input 'label' needs test.label/1, which no earlier step "
-                          "gives; provided by: org.test.tag");
+    refused(f, 1, "read",
+            "step 'read': input 'label' needs test.label/1, which no earlier step "
+            "gives; provided by: org.test.tag");
     assert_int_equal(qc_pipeline_wire(f->pipeline, "read", "label", "late.label"), QC_OK);
-    refused(f, 1, "read", "step 'read': input 'label' needs test.label/1, but 'late.label' is not "
-                          "there before this step; provided by: org.test.tag");
+    refused(f, 1, "read",
+            "step 'read': input 'label' needs test.label/1, but 'late.label' is not "
+            "there before this step; provided by: org.test.tag");
     assert_int_equal(qc_pipeline_wire(f->pipeline, "read", "label", "make.number"), QC_OK);
-    refused(f, 1, "read", "step 'read': input 'label' needs test.label/1, but 'make.number' is of "
-                          "type test.number/1; provided by: org.test.tag");
+    refused(f, 1, "read",
+            "step 'read': input 'label' needs test.label/1, but 'make.number' is of "
+            "type test.number/1; provided by: org.test.tag");
     assert_int_equal(qc_pipeline_insert(f->pipeline, 1, "early", "org.test.tag"), QC_OK);
     assert_int_equal(qc_pipeline_wire(f->pipeline, "read", "label", NULL), QC_OK);
     assert_int_equal(qc_pipeline_run(f->pipeline, f->bag), QC_OK);
@@ -136,7 +142,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_latest_output_of_the_type_is_taken, setup, teardown),
         cmocka_unit_test_setup_teardown(a_wire_names_a_step_or_an_object, setup, teardown),
         cmocka_unit_test_setup_teardown(an_optional_input_can_be_left_unwired, setup, teardown),
-        cmocka_unit_test_setup_teardown(unmet_ports_are_refused_before_anything_runs, setup, teardown),
+        cmocka_unit_test_setup_teardown(unmet_ports_are_refused_before_anything_runs, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(optional_outputs_are_taken_when_given, setup, teardown),
         cmocka_unit_test_setup_teardown(running_again_gives_the_same, setup, teardown),
         cmocka_unit_test_setup_teardown(step_names_are_unique, setup, teardown),
