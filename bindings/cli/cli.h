@@ -1,0 +1,146 @@
+/* The `quadcover` program: shared helpers of its commands. Uses the public headers only. */
+#ifndef QC_CLI_H
+#define QC_CLI_H
+
+#include <qc/qc.h>
+#include <stdio.h>
+
+#if defined(__GNUC__)
+#define CLI_PRINTF(fmt, first) __attribute__((format(printf, fmt, first)))
+#else
+#define CLI_PRINTF(fmt, first)
+#endif
+
+enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_INTERRUPTED = 130 };
+
+/* --- messages: one line each on stderr ------------------------------------------------------------ */
+
+/* "quadcover: error: ..."; returns status. */
+int cli_error(int status, const char *format, ...) CLI_PRINTF(2, 3);
+/* "quadcover: warning: ..." */
+void cli_warning(const char *format, ...) CLI_PRINTF(1, 2);
+/* The same for a problem of the command line, whatever the library calls it: EXIT_USAGE. */
+int cli_usage_error(qc_ctx *ctx, const char *prefix);
+/* The context's last error, prefixed by its stage; returns the exit status: fallback, or
+ * EXIT_INTERRUPTED, or EXIT_INPUT when the data are to blame. prefix (may be NULL): the file. */
+int cli_context_error(qc_ctx *ctx, const char *prefix, int fallback);
+
+/* --- arguments (popt) ------------------------------------------------------------------------------ */
+
+enum { CLI_FLAG, CLI_TEXT, CLI_REAL, CLI_INTEGER, CLI_CHOICE, CLI_LIST };
+
+typedef struct cli_list {
+    int n;
+    const char **item;
+} cli_list;
+
+typedef struct cli_option {
+    const char *name; /* without dashes */
+    char letter;      /* 0 = none */
+    int kind;
+    void *target; /* bool, const char *, double, long long, int (position in choices), cli_list */
+    double min, max;
+    const char *const *choices; /* NULL-terminated */
+    const char *argument, *doc;
+} cli_option;
+
+typedef struct cli_arguments {
+    int n;
+    const char **positional;
+    void *context, *memory; /* owned */
+} cli_arguments;
+
+/* Parses argv (argv[0] = the command). Returns -1 to go on, else the exit status (0 after --help,
+ * EXIT_USAGE after an error message). options ends with name == NULL; min_n .. max_n positional
+ * arguments are expected. synopsis: "IN -o OUT.obj [options]"; about: paragraphs for --help. */
+int cli_parse(int argc, const char **argv, const cli_option *options, int min_n, int max_n,
+              const char *synopsis, const char *about, cli_arguments *out);
+void cli_arguments_free(cli_arguments *arguments);
+
+/* Closest of n names by edit distance; NULL when none is near. */
+const char *cli_closest(const char *name, const char *const *names, size_t n);
+
+/* --- sessions: context, progress, interruption ----------------------------------------------------- */
+
+enum { CLI_PROGRESS_AUTO = 0, CLI_PROGRESS_PLAIN, CLI_PROGRESS_NONE };
+extern const char *const cli_progress_names[];
+
+typedef struct cli_session {
+    qc_ctx *ctx;
+    int progress;
+    double start, time_limit; /* seconds; 0 = none */
+    bool out_of_time, line_open;
+    double last_time;
+    char last_stage[64];
+} cli_session;
+
+/* What every command that computes takes: threads 0 = all cores, time_limit 0 = none. */
+typedef struct cli_common {
+    long long threads;
+    double time_limit;
+    int progress;
+} cli_common;
+#define CLI_COMMON_OPTIONS(c)                                                                      \
+    {"threads", 0, CLI_INTEGER, &(c).threads, 0, 256, NULL, "N",                                   \
+     "threads; 0 = all cores (default); never changes a result"},                                  \
+    {"time-limit", 0, CLI_REAL, &(c).time_limit, 0, 1e9, NULL, "SECONDS",                          \
+     "give up after this time; 0 = never (default)"},                                              \
+    {"progress", 0, CLI_CHOICE, &(c).progress, 0, 0, cli_progress_names, "auto|plain|none",        \
+     "auto: one line on a terminal; plain: lines; none"}
+int cli_session_open(cli_session *session, const cli_common *common);
+void cli_session_close(cli_session *session);
+/* Ends the progress line. */
+void cli_session_quiet(cli_session *session);
+/* The exit status for a failed call: interruption and time limit first, then as cli_context_error. */
+int cli_session_error(cli_session *session, const char *prefix, int fallback);
+bool cli_interrupted(void);
+double cli_seconds(void);
+
+/* --- files ----------------------------------------------------------------------------------------- */
+
+/* EXIT_DONE when a file can be made at path (NULL and "-" are fine), else an error message. */
+int cli_check_writable(const char *path);
+/* Writes text to path through a temporary and a rename; "-" = stdout. */
+int cli_write_text(const char *path, const char *text);
+/* Reads a mesh; EXIT_INPUT on failure. */
+int cli_read_mesh(cli_session *session, const char *path, qc_polygon_mesh **out);
+
+/* --- pipelines -------------------------------------------------------------------------------------- */
+
+/* Registry with the plugins of the list and of QC_PLUGIN_PATH. */
+int cli_registry(qc_ctx *ctx, const cli_list *plugins, qc_registry **out);
+/* Applies STEP.PARAM=VALUE settings. */
+int cli_pipeline_settings(qc_ctx *ctx, qc_pipeline *pipeline, const cli_list *settings);
+/* Builds the default pipeline or reads `file`, then applies STEP.PARAM=VALUE settings. */
+int cli_pipeline(qc_ctx *ctx, qc_registry *registry, const char *file,
+                 const qc_default_pipeline_options *options, const cli_list *settings,
+                 qc_pipeline **out);
+
+/* --- figures ---------------------------------------------------------------------------------------- */
+
+typedef struct cli_times {
+    double read, write, total;
+} cli_times;
+/* The statistics of DESIGN 2 as JSON text; free() it. pipeline may be NULL. */
+char *cli_stats_json(const qc_report *report, const qc_pipeline *pipeline, const char *input,
+                     const char *mode, const cli_times *times, int n_warnings,
+                     const char *const *warnings);
+/* Ratios of a report. */
+typedef struct cli_figures {
+    double rsd_edge, rsd_angle, hausdorff_rel, mean_dist_rel, arap_mean;
+} cli_figures;
+cli_figures cli_report_figures(const qc_report *report);
+
+/* --- commands: argv[0] is the command's name -------------------------------------------------------- */
+
+int cli_remesh(int argc, const char **argv);
+int cli_extract(int argc, const char **argv);
+int cli_field(int argc, const char **argv);
+int cli_check(int argc, const char **argv);
+int cli_stages(int argc, const char **argv);
+int cli_shape(int argc, const char **argv);
+
+/* The registered stages as JSON; free() it. name NULL = all. */
+char *cli_stages_json(qc_registry *registry, const qc_stage *one);
+
+#endif

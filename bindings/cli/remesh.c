@@ -1,0 +1,230 @@
+/* quadcover remesh: triangle mesh to pure quad mesh. */
+#include "bindings/cli/cli.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char about[] =
+    "Reads a triangle mesh (OBJ, OFF, PLY, STL; polygons are triangulated), computes a cross field, a\n"
+    "seamless parameterization on its four-sheeted covering and the integer grid map, and writes the\n"
+    "quads of its integer isolines. Several components are remeshed one by one at one density; one\n"
+    "that fails is reported and left out.\n\n"
+    "Density: --quads N (default 10000), --edge-length L or --edge-length-rel R.\n"
+    "--set step.param=value changes any parameter of any step; `quadcover stages` lists them.";
+static const char synopsis[] = "IN -o OUT.obj [options]";
+
+enum { MODE_NONE = 0, MODE_FAST, MODE_RELOCATE, MODE_BEST };
+static const char *const modes[] = {"", "fast", "relocate", "best", NULL};
+
+typedef struct settings {
+    const char *input, *output, *field, *save_field, *uv, *pipeline, *stats, *report;
+    double quads, edge_length, edge_length_rel, sharp;
+    bool no_features, strict;
+    int mode;
+    long long seed;
+    cli_list set, plugin;
+    cli_common common;
+} settings;
+
+/* The parts of a run which have to be freed. */
+typedef struct run {
+    cli_session session;
+    qc_registry *registry;
+    qc_pipeline *pipeline;
+    qc_polygon_mesh *input;
+    qc_remesh_result result;
+    cli_times times;
+    const char **warning;
+    int n_warnings;
+} run;
+
+static int parse(int argc, const char **argv, settings *s, cli_arguments *arguments) {
+    const double huge = 1e300, tiny = 1e-300;
+    const cli_option options[] = {
+        {"output", 'o', CLI_TEXT, &s->output, 0, 0, NULL, "OUT.obj", "the quad mesh"},
+        {"quads", 0, CLI_REAL, &s->quads, 1, 1e9, NULL, "N", "target number of quads"},
+        {"edge-length", 0, CLI_REAL, &s->edge_length, tiny, huge, NULL, "L",
+         "target edge length, in the units of the mesh"},
+        {"edge-length-rel", 0, CLI_REAL, &s->edge_length_rel, tiny, 1, NULL, "R",
+         "target edge length, relative to the bounding box diagonal"},
+        {"mode", 0, CLI_CHOICE, &s->mode, 0, 0, modes, "fast|relocate|best",
+         "branch point optimisation: none, move only, Algorithm 6.1"},
+        {"field", 0, CLI_TEXT, &s->field, 0, 0, NULL, "FILE",
+         "use this cross field (.rawfield or .rosy)"},
+        {"save-field", 0, CLI_TEXT, &s->save_field, 0, 0, NULL, "F.rawfield",
+         "write the cross field"},
+        {"sharp", 0, CLI_REAL, &s->sharp, 1e-6, 180, NULL, "DEG",
+         "align to creases sharper than this angle (default 35)"},
+        {"no-features", 0, CLI_FLAG, &s->no_features, 0, 0, NULL, NULL,
+         "align neither to creases nor to boundaries"},
+        {"uv", 0, CLI_TEXT, &s->uv, 0, 0, NULL, "OUT_UV.obj",
+         "write the parameterization, one vt per corner"},
+        {"pipeline", 0, CLI_TEXT, &s->pipeline, 0, 0, NULL, "P.json", "run these stages"},
+        {"set", 0, CLI_LIST, &s->set, 0, 0, NULL, "step.param=value", "set a parameter of a step"},
+        {"plugin", 0, CLI_LIST, &s->plugin, 0, 0, NULL, "X.so", "load a plugin"},
+        {"stats", 0, CLI_TEXT, &s->stats, 0, 0, NULL, "S.json", "write statistics"},
+        {"report", 0, CLI_TEXT, &s->report, 0, 0, NULL, "R.html", "write a report (not built yet)"},
+        {"strict", 0, CLI_FLAG, &s->strict, 0, 0, NULL, NULL,
+         "fail when a single component fails"},
+        {"seed", 0, CLI_INTEGER, &s->seed, 0, 9007199254740992.0, NULL, "N",
+         "seed of randomised searches"},
+        CLI_COMMON_OPTIONS(s->common),
+        {NULL, 0, 0, NULL, 0, 0, NULL, NULL, NULL}};
+    const int status = cli_parse(argc, argv, options, 1, 1, synopsis, about, arguments);
+    if (status < 0) s->input = arguments->positional[0];
+    return status;
+}
+
+static int check_outputs(const settings *s) {
+    const char *const outputs[] = {s->output, s->uv, s->save_field, s->stats};
+    int n_given = 0, n_stdout = 0, status = EXIT_DONE;
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs && status == EXIT_DONE; i++) {
+        if (!outputs[i]) continue;
+        n_given++;
+        n_stdout += strcmp(outputs[i], "-") == 0;
+        status = cli_check_writable(outputs[i]);
+    }
+    if (status != EXIT_DONE) return status;
+    if (n_given == 0) return cli_error(EXIT_USAGE, "nothing to write; give -o OUT.obj");
+    if (n_stdout > 1) return cli_error(EXIT_USAGE, "only one output can go to '-'");
+    return EXIT_DONE;
+}
+
+static int check_settings(const settings *s) {
+    if (s->report)
+        return cli_error(EXIT_USAGE, "not built yet: --report; --stats gives the figures as JSON");
+    if (s->mode > MODE_FAST)
+        return cli_error(EXIT_USAGE, "not built yet: --mode %s; use --mode fast", modes[s->mode]);
+    if ((s->quads > 0) + (s->edge_length > 0) + (s->edge_length_rel > 0) > 1)
+        return cli_error(EXIT_USAGE, "give one of --quads, --edge-length and --edge-length-rel");
+    if (s->no_features && s->sharp > 0)
+        return cli_error(EXIT_USAGE, "--sharp and --no-features exclude each other");
+    const bool step_flags = s->quads > 0 || s->edge_length > 0 || s->edge_length_rel > 0 ||
+                            s->sharp > 0 || s->no_features || s->field;
+    if (s->pipeline && step_flags)
+        return cli_error(EXIT_USAGE, "--pipeline brings its own density, features and field; change "
+                                     "them with --set step.param=value");
+    if (s->field && access(s->field, R_OK) != 0)
+        return cli_error(EXIT_INPUT, "%s: cannot read the field; name a .rawfield or .rosy file",
+                         s->field);
+    return check_outputs(s);
+}
+
+/* text lives as long as the run. */
+static void warn(run *r, const char *text) {
+    const char **grown = realloc(r->warning, ((size_t)r->n_warnings + 1) * sizeof *grown);
+    cli_session_quiet(&r->session);
+    cli_warning("%s", text);
+    if (!grown) return;
+    r->warning = grown;
+    r->warning[r->n_warnings++] = text;
+}
+
+static int build_pipeline(run *r, const settings *s) {
+    qc_default_pipeline_options options = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
+    options.quads = s->quads;
+    options.edge_length = s->edge_length;
+    options.edge_length_rel = s->edge_length_rel;
+    options.crease_angle = s->no_features ? -1 : s->sharp;
+    options.field_path = s->field;
+    options.seed = (uint64_t)s->seed;
+    const int status = cli_registry(r->session.ctx, &s->plugin, &r->registry);
+    if (status != EXIT_DONE) return status;
+    return cli_pipeline(r->session.ctx, r->registry, s->pipeline, &options, &s->set, &r->pipeline);
+}
+
+static int compute(run *r, const settings *s) {
+    if (!s->pipeline && s->mode == MODE_NONE)
+        warn(r, "mode best is not built yet: ran mode fast (name --mode fast to silence this)");
+    qc_remesh_options options = QC_REMESH_OPTIONS_INIT;
+    options.strict = s->strict;
+    if (qc_remesh(r->session.ctx, r->pipeline, r->input, &options, &r->result) != QC_OK)
+        return cli_session_error(&r->session, s->input, EXIT_FAILED);
+    for (int32_t i = 0; i < r->result.n_warnings; i++) warn(r, r->result.warning[i]);
+    return EXIT_DONE;
+}
+
+static int write_mesh(run *r, const qc_polygon_mesh *mesh, const char *path, const char *what) {
+    if (!path) return EXIT_DONE;
+    if (!mesh)
+        return cli_error(EXIT_FAILED, "%s: no step of the pipeline makes %s", path, what);
+    if (qc_polygon_mesh_write(r->session.ctx, mesh, path, "quadcover " QC_VERSION_STRING) != QC_OK)
+        return cli_session_error(&r->session, path, EXIT_FAILED);
+    return EXIT_DONE;
+}
+
+static int write_field(run *r, const char *path) {
+    if (!path) return EXIT_DONE;
+    if (!r->result.field)
+        return cli_error(EXIT_FAILED, "%s: no step of the pipeline makes a field", path);
+    if (r->result.mesh->n_faces != r->input->n_faces)
+        warn(r, "the field written has one cross for each face of the repaired mesh, not of the "
+                "input");
+    if (qc_face_field_write(r->session.ctx, r->result.field, path) != QC_OK)
+        return cli_session_error(&r->session, path, EXIT_FAILED);
+    return EXIT_DONE;
+}
+
+static int write_stats(run *r, const settings *s) {
+    if (!s->stats) return EXIT_DONE;
+    r->times.total = cli_seconds() - r->session.start;
+    char *text = cli_stats_json(r->result.report, r->pipeline, s->input,
+                                s->pipeline ? "pipeline" : "fast", &r->times, r->n_warnings,
+                                r->warning);
+    if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->stats);
+    const int status = cli_write_text(s->stats, text);
+    free(text);
+    return status;
+}
+
+static void check_density(run *r) {
+    const qc_report *report = r->result.report;
+    const double target = report->density.target_quads;
+    if (r->result.n_failed == 0 && target > 0 && report->quads.faces > 0 &&
+        fabs((double)report->quads.faces - target) > 0.05 * target)
+        warn(r, "the number of quads is more than 5 % off the target");
+}
+
+static int write_all(run *r, const settings *s) {
+    cli_session_quiet(&r->session);
+    if (cli_interrupted()) return cli_error(EXIT_INTERRUPTED, "interrupted");
+    const double start = cli_seconds();
+    check_density(r);
+    int status = write_mesh(r, r->result.quads, s->output, "quads");
+    if (status == EXIT_DONE) status = write_mesh(r, r->result.uv, s->uv, "a parameterization");
+    if (status == EXIT_DONE) status = write_field(r, s->save_field);
+    r->times.write = cli_seconds() - start;
+    return status == EXIT_DONE ? write_stats(r, s) : status;
+}
+
+static int work(run *r, const settings *s) {
+    const double start = cli_seconds();
+    int status = build_pipeline(r, s);
+    if (status == EXIT_DONE) status = cli_read_mesh(&r->session, s->input, &r->input);
+    r->times.read = cli_seconds() - start;
+    if (status == EXIT_DONE) status = compute(r, s);
+    if (status == EXIT_DONE) status = write_all(r, s);
+    return status;
+}
+
+int cli_remesh(int argc, const char **argv) {
+    settings s;
+    run r;
+    cli_arguments arguments;
+    memset(&s, 0, sizeof s);
+    memset(&r, 0, sizeof r);
+    int status = parse(argc, argv, &s, &arguments);
+    if (status >= 0) return status;
+    status = check_settings(&s);
+    if (status == EXIT_DONE) status = cli_session_open(&r.session, &s.common);
+    if (status == EXIT_DONE) status = work(&r, &s);
+    qc_remesh_result_clear(&r.result);
+    qc_object_release(r.input);
+    qc_pipeline_free(r.pipeline);
+    qc_registry_free(r.registry);
+    if (r.session.ctx) cli_session_close(&r.session);
+    free(r.warning);
+    cli_arguments_free(&arguments);
+    return status;
+}

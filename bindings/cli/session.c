@@ -1,0 +1,94 @@
+/* A run of the program: context, progress display, Ctrl-C and the time limit. */
+#include "bindings/cli/cli.h"
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+const char *const cli_progress_names[] = {"auto", "plain", "none", NULL};
+
+static volatile sig_atomic_t interrupted;
+
+/* SA_RESETHAND: a second Ctrl-C ends the program at once. */
+static void on_signal(int number) {
+    (void)number;
+    interrupted = 1;
+}
+
+bool cli_interrupted(void) { return interrupted != 0; }
+
+double cli_seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void show(cli_session *s, const char *stage, double fraction) {
+    const double now = cli_seconds();
+    const bool new_stage = strcmp(stage, s->last_stage) != 0;
+    if (now - s->last_time < (s->progress == CLI_PROGRESS_PLAIN ? 1.0 : 0.1) && !new_stage) return;
+    s->last_time = now;
+    snprintf(s->last_stage, sizeof s->last_stage, "%s", stage);
+    if (s->progress == CLI_PROGRESS_PLAIN) {
+        fprintf(stderr, "quadcover: %3.0f %% %s\n", 100 * fraction, stage);
+        return;
+    }
+    fprintf(stderr, "\r\033[K%3.0f %% %s", 100 * fraction, stage);
+    s->line_open = true;
+}
+
+static bool on_progress(void *user, const char *stage, double fraction) {
+    cli_session *s = user;
+    if (s->progress != CLI_PROGRESS_NONE) show(s, stage, fraction);
+    if (s->time_limit > 0 && cli_seconds() - s->start > s->time_limit) s->out_of_time = true;
+    return !interrupted && !s->out_of_time;
+}
+
+static void on_log(void *user, int32_t level, const char *stage, const char *text) {
+    cli_session *s = user;
+    if (level < QC_LOG_WARNING) return;
+    cli_session_quiet(s);
+    cli_warning("%s%s%s", stage, *stage ? ": " : "", text);
+}
+
+int cli_session_open(cli_session *session, const cli_common *common) {
+    memset(session, 0, sizeof *session);
+    session->start = cli_seconds();
+    session->time_limit = common->time_limit;
+    session->progress = common->progress == CLI_PROGRESS_AUTO && !isatty(STDERR_FILENO)
+                            ? CLI_PROGRESS_NONE
+                            : common->progress;
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    action.sa_flags = (int)SA_RESETHAND;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    qc_ctx_options options = QC_CTX_OPTIONS_INIT;
+    options.threads = (uint32_t)common->threads;
+    options.progress = on_progress;
+    options.log = on_log;
+    options.user = session;
+    const qc_status status = qc_ctx_create(&options, &session->ctx);
+    return status == QC_OK ? EXIT_DONE : cli_error(EXIT_FAILED, "%s", qc_status_name(status));
+}
+
+void cli_session_close(cli_session *session) {
+    cli_session_quiet(session);
+    qc_ctx_free(session->ctx);
+    session->ctx = NULL;
+}
+
+void cli_session_quiet(cli_session *session) {
+    if (session->line_open) fputs("\r\033[K", stderr);
+    session->line_open = false;
+}
+
+int cli_session_error(cli_session *session, const char *prefix, int fallback) {
+    cli_session_quiet(session);
+    if (interrupted) return cli_error(EXIT_INTERRUPTED, "interrupted");
+    if (session->out_of_time)
+        return cli_error(EXIT_FAILED, "%s: time limit of %g s reached",
+                         qc_ctx_error(session->ctx)->stage, session->time_limit);
+    return cli_context_error(session->ctx, prefix, fallback);
+}

@@ -1,0 +1,130 @@
+/* The statistics file: keys as DESIGN 2 fixes them; ratios are made from the sums of the report. */
+#include "bindings/cli/cli.h"
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#define HALF_PI 1.57079632679489661923
+
+/* Standard deviation from a count, a sum and a sum of squares. */
+static double deviation(double n, double sum, double sum2) {
+    const double mean = n > 0 ? sum / n : 0, variance = n > 0 ? sum2 / n - mean * mean : 0;
+    return variance > 0 ? sqrt(variance) : 0;
+}
+
+cli_figures cli_report_figures(const qc_report *r) {
+    cli_figures f = {0, 0, 0, 0, 0};
+    if (r->quads.edge_sum > 0)
+        f.rsd_edge = 100 * deviation(r->quads.edges, r->quads.edge_sum, r->quads.edge_sum2) *
+                     r->quads.edges / r->quads.edge_sum;
+    f.rsd_angle = 100 * deviation(r->quads.corners, r->quads.angle_sum, r->quads.angle_sum2) / HALF_PI;
+    if (r->quads.diagonal > 0) {
+        f.hausdorff_rel = r->quads.hausdorff / r->quads.diagonal;
+        if (r->quads.distance_samples > 0)
+            f.mean_dist_rel =
+                r->quads.distance_sum / r->quads.distance_samples / r->quads.diagonal;
+    }
+    if (r->uv.area > 0) f.arap_mean = r->uv.arap_sum / r->uv.area;
+    return f;
+}
+
+static json_t *number(double x) { return isfinite(x) ? json_real(x) : json_null(); }
+static json_t *integer(int64_t n) { return json_integer((json_int_t)n); }
+static double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+/* Counts by quarter index; -1 and +1 always, others where there are any. */
+static json_t *index_counts(const qc_report *r) {
+    json_t *counts = json_object();
+    for (int i = -8; i <= 8; i++) {
+        char key[8];
+        if (i == 0 || (r->field.index4[8 + i] == 0 && abs(i) != 1)) continue;
+        snprintf(key, sizeof key, "%d", i);
+        json_object_set_new(counts, key, integer(r->field.index4[8 + i]));
+    }
+    return counts;
+}
+
+static json_t *energies(const qc_report *r) {
+    const double field = r->energy.field;
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "E_D", number(r->energy.curl), "E_H",
+                     number(r->energy.harmonic), "E_D_rel", number(percent(r->energy.curl, field)),
+                     "E_H_rel", number(percent(r->energy.harmonic, field)), "E_H_direct_rel",
+                     number(percent(r->energy.harmonic_direct, field)), "iterations",
+                     integer(r->energy.iterations), "evaluations", integer(r->energy.evaluations));
+}
+
+static json_t *quads(const qc_report *r, const cli_figures *f) {
+    return json_pack(
+        "{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "vertices", integer(r->quads.vertices),
+        "faces", integer(r->quads.faces), "non_quads", integer(r->quads.non_quads), "irregular",
+        integer(r->quads.irregular), "euler", integer(r->quads.euler), "components",
+        integer(r->quads.components), "boundaries", integer(r->quads.boundaries), "rsd_edge",
+        number(f->rsd_edge), "rsd_angle", number(f->rsd_angle), "min_scaled_jacobian",
+        number(r->quads.min_scaled_jacobian), "hausdorff_rel", number(f->hausdorff_rel),
+        "mean_dist_rel", number(f->mean_dist_rel));
+}
+
+static json_t *seconds(const qc_pipeline *pipeline, const cli_times *times) {
+    json_t *stages = json_object();
+    for (uint32_t i = 0; pipeline && i < qc_pipeline_count(pipeline); i++)
+        json_object_set_new(stages, qc_pipeline_step_name(pipeline, i),
+                            number(qc_pipeline_seconds(pipeline, i)));
+    return json_pack("{s:o,s:o,s:o,s:o}", "total", number(times->total), "read",
+                     number(times->read), "write", number(times->write), "stages", stages);
+}
+
+/* Every step with its parameters, and the versions of the stages. */
+static void add_pipeline(json_t *root, const qc_pipeline *pipeline) {
+    char *text = NULL;
+    if (!pipeline || qc_pipeline_print(pipeline, &text) != QC_OK) return;
+    json_t *steps = json_loads(text, 0, NULL), *versions = json_object();
+    qc_text_free(text);
+    if (steps) json_object_set_new(root, "pipeline", steps);
+    for (uint32_t i = 0; i < qc_pipeline_count(pipeline); i++) {
+        const qc_stage *stage = qc_pipeline_step_stage(pipeline, i);
+        json_object_set_new(versions, stage->id, json_string(stage->version));
+    }
+    json_object_set_new(root, "versions", versions);
+}
+
+static double peak_rss_mb(void) {
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss / 1024 : 0;
+}
+
+char *cli_stats_json(const qc_report *r, const qc_pipeline *pipeline, const char *input,
+                     const char *mode, const cli_times *times, int n_warnings,
+                     const char *const *warnings) {
+    const cli_figures f = cli_report_figures(r);
+    json_t *list = json_array();
+    for (int i = 0; i < n_warnings; i++) json_array_append_new(list, json_string(warnings[i]));
+    json_t *root = json_pack(
+        "{s:s,s:{s:s,s:o,s:o,s:o,s:o,s:o},s:{s:o,s:o},s:{s:o,s:o},s:o,s:{s:o,s:o,s:o,s:o},s:o,s:o,"
+        "s:o,s:s,s:o}",
+        "quadcover", qc_version(), /**/
+        "input", "file", input, "vertices", integer(r->input.vertices), "faces",
+        integer(r->input.faces), "genus", integer(r->input.genus), "boundaries",
+        integer(r->input.boundaries), "components", integer(r->input.components), /**/
+        "density", "edge_length", number(r->density.edge_length), "target_quads",
+        number(r->density.target_quads), /**/
+        "field", "singularities", integer(r->field.singularities), "index4", index_counts(r), /**/
+        "energy", energies(r),                                                            /**/
+        "uv", "flipped", integer(r->uv.flipped), "degenerate", integer(r->uv.degenerate),
+        "max_seam_error", number(r->uv.max_seam_error), "arap_mean", number(f.arap_mean), /**/
+        "quads", quads(r, &f), "seconds", seconds(pipeline, times), "peak_rss_mb",
+        number(peak_rss_mb()), "mode", mode, "warnings", list);
+    if (!root) return NULL;
+    add_pipeline(root, pipeline);
+    char *text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    json_decref(root);
+    const size_t length = text ? strlen(text) : 0;
+    char *line = text ? realloc(text, length + 2) : NULL;
+    if (!line) {
+        free(text);
+        return NULL;
+    }
+    memcpy(line + length, "\n", 2);
+    return line;
+}
