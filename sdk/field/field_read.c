@@ -62,17 +62,23 @@ static int32_t source_faces(const qc_mesh *mesh, bool *exact) {
     return n;
 }
 
-/* `N F` on one line with N <= F is a .rawfield, otherwise F comes first. */
+static bool is_degree(int32_t n) { return n == 1 || n == 2 || n == 4; }
+
+/* `N F` is a .rawfield and F, N a .rosy; where both would fit the mesh (four faces), a .rawfield has them on
+ * one line. */
 static qc_status read_header(scanner *s, const qc_mesh *mesh, layout *out) {
     int32_t a, b;
     qc_status status = next_count(s, &a);
     int64_t line = s->line;
     if (!status) status = next_count(s, &b);
     if (status) return status;
-    bool raw = a < b || (a == b && s->line == line), exact;
-    *out = raw ? (layout){a, b, a} : (layout){b, a, 1};
+    bool exact;
     int32_t faces = source_faces(mesh, &exact);
-    if (out->degree != 4 && out->degree != 2 && out->degree != 1)
+    bool raw = is_degree(a) && (exact ? b == faces : b >= faces);
+    bool rosy = is_degree(b) && (exact ? a == faces : a >= faces);
+    if (raw == rosy) raw = raw ? s->line == line : a <= b;
+    *out = raw ? (layout){a, b, a} : (layout){b, a, 1};
+    if (!is_degree(out->degree))
         return qc__fail(s->ctx, QC_ERR_INPUT, line,
                         "%s, line %lld: N = %d directions a face; a cross field needs N = 4", s->path,
                         (long long)line, (int)out->degree);

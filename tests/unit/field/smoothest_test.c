@@ -1,0 +1,120 @@
+/* The smoothest field: few singularities, parallel where parallel fields exist, stationary. */
+#include "surfaces.h"
+
+static qc_complex *smoothest(qc_ctx *ctx, const qc_mesh *mesh) {
+    qc_complex *x = malloc(sizeof *x * (size_t)mesh->n_faces);
+    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, NULL, 0, x), QC_OK);
+    return x;
+}
+
+static void few_singularities_on_simple_surfaces(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *sphere = ellipsoid(ctx, 32, 20, 1, 1, 1), *torus = grid(ctx, TORUS, 40, 20, 1);
+    qc_complex *x = smoothest(ctx, sphere), *y = smoothest(ctx, torus);
+    qc_matching *a = match(ctx, sphere, x), *b = match(ctx, torus, y);
+    assert_int_equal(a->index4_sum, 8);
+    assert_int_equal(a->n_singular, 8);
+    assert_int_equal(b->index4_sum, 0);
+    qc_object_release(a);
+    qc_object_release(b);
+    qc_object_release(sphere);
+    qc_object_release(torus);
+    free(x);
+    free(y);
+}
+
+/* A flat square and a cylinder carry parallel fields: all theta vanish although the matrix is singular. */
+static void flat_surfaces_get_parallel_fields(void **state) {
+    qc_ctx *ctx = *state;
+    for (int kind = 0; kind < 2; kind++) {
+        qc_mesh *mesh = grid(ctx, kind ? CYLINDER : PLANE, 12, 8, 1);
+        qc_complex *x = smoothest(ctx, mesh);
+        qc_matching *m = match(ctx, mesh, x);
+        for (int32_t e = 0; e < mesh->n_edges; e++) assert_true(fabs(m->theta[e]) < 1e-6);
+        qc_object_release(m);
+        qc_object_release(mesh);
+        free(x);
+    }
+}
+
+/* Two components, one of them guided: each is solved by itself. */
+static void components_are_independent(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *part = grid(ctx, PLANE, 6, 6, 1);
+    int32_t V = part->n_vertices, F = part->n_faces, f[6 * 72];
+    double p[6 * 49];
+    for (int32_t i = 0; i < 6 * V; i++) p[i] = part->position[i % (3 * V)] * (i < 3 * V ? 1 : 1e-2);
+    for (int32_t i = 0; i < 6 * F; i++) f[i] = part->face_vertex[i % (3 * F)] + (i < 3 * F ? 0 : V);
+    qc_mesh *mesh = NULL;
+    assert_int_equal(qc_mesh_create(ctx, 2 * V, p, 2 * F, f, &mesh), QC_OK);
+    double real[3 * 144], imaginary[3 * 144], diagonal[3] = {1, 0.5, 0};
+    assert_int_equal(qc_tangent_frames(ctx, mesh, real, imaginary), QC_OK);
+    qc_complex x[144], guide = in_frame(real, imaginary, 10, diagonal);
+    uint8_t trusted[144] = {0};
+    for (int i = 0; i < 144; i++) x[i] = guide;
+    trusted[10] = 1;
+    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, trusted, 1, x), QC_OK);
+    for (size_t t = 0; t < (size_t)F; t++)
+        assert_true(cross_angle(x[t], in_frame(real, imaginary, t, diagonal)) < 1e-6);
+    qc_matching *m = match(ctx, mesh, x);
+    for (int32_t e = 0; e < mesh->n_edges; e++) assert_true(fabs(m->theta[e]) < 1e-6);
+    qc_object_release(m);
+    qc_object_release(mesh);
+    qc_object_release(part);
+}
+
+static void alignment_moves_towards_the_guide(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *mesh = ellipsoid(ctx, 20, 13, 1, 1.3, 2);
+    size_t F = (size_t)mesh->n_faces;
+    qc_complex *guide = random_crosses(mesh, 11), *x = malloc(sizeof *x * F);
+    uint8_t *all = malloc(F);
+    memset(all, 1, F);
+    double before = PI;
+    double alignments[] = {1e-3, 1, 1e3, 1e6};
+    for (int i = 0; i < 4; i++) {
+        double sum = 0;
+        memcpy(x, guide, sizeof *x * F);
+        assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, alignments[i], x), QC_OK);
+        for (size_t t = 0; t < F; t++) sum += cross_angle(x[t], guide[t]) / (double)F;
+        assert_true(sum < before);
+        before = sum;
+    }
+    assert_true(before < 1e-3);
+    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, -1, x), QC_ERR_ARGUMENT);
+    qc_object_release(mesh);
+    free(guide);
+    free(x);
+    free(all);
+}
+
+static void threads_give_the_same_bits(void **state) {
+    (void)state;
+    qc_complex *x[2];
+    size_t bytes = 0;
+    for (int i = 0; i < 2; i++) {
+        qc_ctx_options options = QC_CTX_OPTIONS_INIT;
+        options.threads = i ? 4 : 1;
+        qc_ctx *ctx = NULL;
+        assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
+        qc_mesh *mesh = ellipsoid(ctx, 50, 30, 1, 1.5, 2);
+        bytes = sizeof **x * (size_t)mesh->n_faces;
+        x[i] = smoothest(ctx, mesh);
+        qc_object_release(mesh);
+        qc_ctx_free(ctx);
+    }
+    assert_memory_equal(x[0], x[1], bytes);
+    free(x[0]);
+    free(x[1]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(few_singularities_on_simple_surfaces),
+        cmocka_unit_test(flat_surfaces_get_parallel_fields),
+        cmocka_unit_test(components_are_independent),
+        cmocka_unit_test(alignment_moves_towards_the_guide),
+        cmocka_unit_test(threads_give_the_same_bits),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
