@@ -59,8 +59,9 @@ QC_API qc_status qc_polygon_mesh_parse(qc_ctx *ctx, const void *data, size_t siz
  * when the mesh has uvs. comment (may be NULL) becomes `#` lines at the top. */
 QC_API qc_status qc_polygon_mesh_write(qc_ctx *ctx, const qc_polygon_mesh *mesh, const char *path,
                                        const char *comment);
-/* Disjoint union of n meshes (source faces of mesh i are shifted by source_shift[i] when given, or
- * mapped through source_map[i] when given; NULL arrays = no change). */
+/* Disjoint union of n meshes. Source faces of mesh i are mapped through source_map[i] (source_map or
+ * an entry of it NULL = no change). An optional array exists in the result when some part has it;
+ * elsewhere it says "none" (-1 for uvs and source faces, 0 for lines and groups). */
 QC_API qc_status qc_polygon_mesh_merge(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *const *parts,
                                        const int32_t *const *source_map, qc_polygon_mesh **out);
 
@@ -70,7 +71,7 @@ typedef struct qc_polygon_topology {
     int32_t irregular;             /* interior vertices of valence other than 4                     */
     int32_t non_manifold_edges;    /* edges with three or more faces                                */
     int32_t non_manifold_vertices; /* vertices whose faces form more than one fan                   */
-    int32_t inconsistent_edges;    /* edges run through twice in the same direction                 */
+    int32_t inconsistent_edges;    /* edges with two faces which run through it in one direction    */
     int32_t duplicate_faces, degenerate_faces, unreferenced_vertices;
     int32_t first_bad_element;     /* a vertex or face of the first defect above, -1 = none          */
 } qc_polygon_topology;
@@ -99,7 +100,8 @@ typedef struct qc_mesh {
 } qc_mesh;
 
 /* Builds the connectivity of an oriented manifold triangle list (arrays are copied). Errors:
- * ARGUMENT (index out of range, a vertex twice in a face; where = face), NON_MANIFOLD (where = face of
+ * ARGUMENT (index out of range, a vertex twice in a face; where = face; a coordinate which is not
+ * finite, where = vertex), NON_MANIFOLD (where = face of
  * an edge with three faces or inconsistent orientation, or a vertex with two fans; the text names it;
  * unreferenced vertices are ARGUMENT with where = vertex), NOMEM. */
 QC_API qc_status qc_mesh_create(qc_ctx *ctx, int32_t n_vertices, const double *position,
@@ -152,7 +154,9 @@ QC_API qc_status qc_mesh_geometry(qc_ctx *ctx, const qc_mesh *mesh, double *leng
 /* --- shortest paths and cut graphs (thesis 1.3) -------------------------------------------------- */
 
 /* Dijkstra from all vertices with source[v] != 0. weight: n_edges > 0, NULL = Euclidean length.
- * distance: n_vertices (infinity when not reached); predecessor_edge: n_vertices, -1 at sources. */
+ * distance: n_vertices (infinity when not reached); predecessor_edge: n_vertices, -1 at sources and
+ * where not reached; either may be NULL. Errors: ARGUMENT (weight not positive, where = edge), NOMEM,
+ * CANCELLED. */
 QC_API qc_status qc_mesh_shortest_paths(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                         const uint8_t *source, double *distance,
                                         int32_t *predecessor_edge);
@@ -161,8 +165,10 @@ QC_API qc_status qc_mesh_shortest_paths(qc_ctx *ctx, const qc_mesh *mesh, const 
  * vertices and boundaries). base: n_vertices flags; boundary vertices are base vertices of their own
  * accord; a closed component without any gets its lowest-numbered vertex. cut: n_edges flags, 1 on
  * edges of the graph. Boundary edges are never flagged. Every component minus its cut edges is a
- * topological disk (annuli of a boundary are opened too), and every base vertex is on the graph.
- * weight as above. Errors: NOMEM, CANCELLED. */
+ * topological disk (annuli of a boundary are opened too), and every base vertex is on the graph. The
+ * one exception: the graph of a sphere with a single base vertex (or none) is empty, so it stays
+ * closed; who needs a disk there gives two base vertices. base NULL = none. weight as above. Errors:
+ * ARGUMENT (weight not positive, where = edge), NOMEM, CANCELLED. */
 QC_API qc_status qc_mesh_cut_graph(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                    const uint8_t *base, uint8_t *cut);
 
