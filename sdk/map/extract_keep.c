@@ -27,12 +27,14 @@ static void largest_sets(const qc__ports *p, const qc__cells *c, int32_t *set, i
     }
 }
 
-/* Drops the cells of other sets; returns their number. */
-static int32_t compact(const qc__ports *p, qc__cells *c, int32_t *set, const int32_t *best) {
+/* Drops the cells of other sets; dropped: their number for each component. */
+static void compact(const qc__ports *p, qc__cells *c, int32_t *set, const int32_t *best,
+                    int32_t *dropped) {
     int32_t kept = 0;
     for (int32_t i = 0; i < c->n; i++) {
         const int32_t *side = c->port + 4 * (int64_t)i;
         const bool keep = qc__sets_find(set, i) == best[component_of(p, c, i)];
+        dropped[component_of(p, c, i)] += !keep;
         for (int k = 0; k < 4; k++) {
             const int32_t port = side[k];
             c->left[port] = keep ? kept : -1;
@@ -40,9 +42,7 @@ static int32_t compact(const qc__ports *p, qc__cells *c, int32_t *set, const int
         }
         kept += keep;
     }
-    const int32_t dropped = c->n - kept;
     c->n = kept;
-    return dropped;
 }
 
 /* V - E + F of the kept cells less that of the mesh, for each component: 4 F = 2 E - (boundary sides). The
@@ -76,14 +76,31 @@ static int32_t first_face(const qc_mesh *m, int32_t component) {
     return t;
 }
 
-static qc_status verify(qc_ctx *ctx, const qc__ports *p, const qc__cells *c, const int32_t *best,
-                        int32_t *vertex, int32_t *excess) {
-    const qc_mesh *m = p->lattice->g->mesh;
-    for (int32_t i = 0; i < m->n_components; i++)
+/* A component without quads, or one which a narrow neck divides: more than a tenth would be lost. */
+static qc_status check_sizes(qc_ctx *ctx, const qc_mesh *m, const int32_t *size,
+                             const int32_t *best, const int32_t *dropped) {
+    for (int32_t i = 0; i < m->n_components; i++) {
         if (best[i] < 0)
             return qc__fail(ctx, QC_ERR_FAILED, first_face(m, i),
                             "component %d (face %d ...) is smaller than a quad; try a finer "
                             "density", (int)i, (int)first_face(m, i));
+        if (dropped[i] > size[best[i]] / 9)
+            return qc__fail(ctx, QC_ERR_FAILED, first_face(m, i),
+                            "component %d (face %d ...) has a neck narrower than a quad: it would "
+                            "cut off %d quads of %d; try a finer density",
+                            (int)i, (int)first_face(m, i), (int)dropped[i],
+                            (int)(dropped[i] + size[best[i]]));
+        if (dropped[i] > 0)
+            qc__log(ctx, QC_LOG_WARNING,
+                    "component %d: %d quads cut off by the boundary are dropped", (int)i,
+                    (int)dropped[i]);
+    }
+    return QC_OK;
+}
+
+static qc_status verify(qc_ctx *ctx, const qc__ports *p, const qc__cells *c, int32_t *vertex,
+                        int32_t *excess) {
+    const qc_mesh *m = p->lattice->g->mesh;
     compare_euler(p, c, vertex, excess);
     for (int32_t i = 0; i < m->n_components; i++)
         if (excess[i] != 0)
@@ -99,17 +116,16 @@ qc_status qc__cells_keep(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells) 
     const int32_t n_components = ports->lattice->g->mesh->n_components;
     int32_t *set = QC__NEW(ctx, int32_t, cells->n), *size = QC__ZERO(ctx, int32_t, cells->n);
     int32_t *best = QC__NEW(ctx, int32_t, n_components);
-    int32_t *excess = QC__NEW(ctx, int32_t, n_components);
+    int32_t *excess = QC__ZERO(ctx, int32_t, n_components); /* first the number of cells dropped */
     int32_t *vertex = QC__NEW(ctx, int32_t, ports->n);
     qc_status status = set && size && best && excess && vertex ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         connect(ports, cells, set);
         largest_sets(ports, cells, set, size, best);
-        const int32_t dropped = compact(ports, cells, set, best);
-        if (dropped > 0)
-            qc__log(ctx, QC_LOG_INFO, "%d quads cut off by the boundary dropped", (int)dropped);
-        status = verify(ctx, ports, cells, best, vertex, excess);
+        compact(ports, cells, set, best, excess);
+        status = check_sizes(ctx, ports->lattice->g->mesh, size, best, excess);
     }
+    if (status == QC_OK) status = verify(ctx, ports, cells, vertex, excess);
     qc__free(set);
     qc__free(size);
     qc__free(best);

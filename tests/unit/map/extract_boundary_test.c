@@ -1,0 +1,174 @@
+/* Boundaries which do not follow isolines: whole quads only, every hole and component kept, or an error. */
+#include "unit/map/maps.h"
+
+/* A plane of n x n cells, k x k squares in each, with rectangles of squares (x0, y0, x1, y1) removed. */
+static maps_list plane_with_holes(int n, int k, double angle, int n_holes, const int (*hole)[4],
+                                  maps_rng *r) {
+    maps_list l = maps_plane(n * k, n, n, 0, angle, 0.1 * (angle != 0), 0, r);
+    int32_t kept = 0;
+    for (int32_t t = 0; t < l.n_faces; t++) {
+        const int x = t / 2 % (n * k), y = t / 2 / (n * k);
+        bool inside = false;
+        for (int i = 0; i < n_holes; i++)
+            inside |= x >= hole[i][0] && y >= hole[i][1] && x < hole[i][2] && y < hole[i][3];
+        if (inside) continue;
+        memmove(l.face + 3 * kept, l.face + 3 * t, 3 * sizeof *l.face);
+        memmove(l.uv + 6 * kept, l.uv + 6 * t, 6 * sizeof *l.uv);
+        kept++;
+    }
+    l.n_faces = kept;
+    int32_t *number = calloc((size_t)l.n_vertices, sizeof *number), used = 0;
+    for (int32_t c = 0; c < 3 * kept; c++) number[l.face[c]] = 1;
+    for (int32_t v = 0; v < l.n_vertices; v++) {
+        if (!number[v]) continue;
+        memmove(l.position + 3 * used, l.position + 3 * v, 3 * sizeof *l.position);
+        number[v] = used++;
+    }
+    for (int32_t c = 0; c < 3 * kept; c++) l.face[c] = number[l.face[c]];
+    l.n_vertices = used;
+    free(number);
+    maps_gauge(&l, r);
+    return l;
+}
+
+/* Cells whose interior meets no hole. */
+static int32_t cells_left(int n, int k, int n_holes, const int (*hole)[4]) {
+    int32_t count = 0;
+    for (int x = 0; x < n * k; x += k)
+        for (int y = 0; y < n * k; y += k) {
+            bool clean = true;
+            for (int i = 0; i < n_holes; i++)
+                clean &= hole[i][0] >= x + k || hole[i][2] <= x || hole[i][1] >= y + k ||
+                         hole[i][3] <= y;
+            count += clean;
+        }
+    return count;
+}
+
+static qc_status extract(qc_ctx *ctx, maps_list *l, int32_t faces, int32_t loops) {
+    qc_corner_map *map = maps_finish(ctx, l);
+    qc_grid_map *grid = NULL;
+    qc_polygon_mesh *q = NULL;
+    assert_int_equal(map->mesh->n_boundary_loops, loops);
+    maps_ok(ctx, qc_grid_map_create(ctx, map, 0, &grid));
+    const qc_status status = qc_map_extract(ctx, grid, &q);
+    if (status == QC_OK) {
+        qc_polygon_topology t;
+        maps_ok(ctx, qc_polygon_mesh_topology(ctx, q, &t));
+        if (faces >= 0) assert_int_equal(q->n_faces, faces);
+        assert_int_equal(t.boundary_loops, loops);
+        assert_int_equal(t.euler, 2 - loops);
+        assert_int_equal(t.components, 1);
+        assert_int_equal(t.non_manifold_vertices + t.non_manifold_edges, 0);
+    } else {
+        assert_int_equal(status, QC_ERR_FAILED);
+        assert_null(q);
+    }
+    qc_object_release(q);
+    qc_object_release(grid);
+    qc_object_release(map);
+    return status;
+}
+
+static void hole_inside_a_cell_stays(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {21};
+    const int holes[][4] = {{9, 13, 10, 14}, {21, 22, 23, 23}, {33, 5, 34, 7}};
+    for (int n_holes = 0; n_holes <= 3; n_holes++) {
+        maps_list l = plane_with_holes(10, 4, 0, n_holes, holes, &r);
+        maps_ok(ctx, extract(ctx, &l, 100 - n_holes, 1 + n_holes));
+    }
+}
+
+static void holes_match_the_reference(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {22};
+    for (int trial = 0; trial < 40; trial++) {
+        int hole[4][4];
+        for (int i = 0; i < 4; i++) { /* one in each quarter, at least two cells apart */
+            const int x = 24 * (i % 2), y = 24 * (i / 2);
+            hole[i][0] = x + 5 + (int)(maps_random(&r) % 8);
+            hole[i][1] = y + 5 + (int)(maps_random(&r) % 8);
+            hole[i][2] = hole[i][0] + 1 + (int)(maps_random(&r) % 6);
+            hole[i][3] = hole[i][1] + 1 + (int)(maps_random(&r) % 6);
+        }
+        maps_list l = plane_with_holes(12, 4, 0, 4, (const int(*)[4])hole, &r);
+        maps_ok(ctx, extract(ctx, &l, cells_left(12, 4, 4, (const int(*)[4])hole), 5));
+    }
+}
+
+static void turned_planes_keep_their_holes(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {23};
+    const int holes[][4] = {{10, 10, 13, 15}, {32, 12, 33, 13}, {12, 30, 20, 38}, {34, 34, 35, 36}};
+    for (int trial = 0; trial < 40; trial++) {
+        maps_list l = plane_with_holes(16, 3, 0.1 + 3 * maps_uniform(&r), 4, holes, &r);
+        maps_ok(ctx, extract(ctx, &l, -1, 5));
+    }
+}
+
+static void merging_holes_are_refused(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {24};
+    const int holes[][4] = {{17, 17, 19, 19}, {21, 21, 23, 23}};
+    maps_list l = plane_with_holes(10, 4, 0, 2, holes, &r);
+    assert_int_equal(extract(ctx, &l, -1, 3), QC_ERR_FAILED);
+    assert_non_null(strstr(qc_ctx_error(ctx)->text, "narrower than a quad"));
+}
+
+static void narrow_necks(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {25};
+    /* two slots from the sides leave a neck of two squares: half a cell */
+    const int half[][4] = {{0, 20, 19, 21}, {21, 20, 40, 21}};
+    maps_list l = plane_with_holes(10, 4, 0, 2, half, &r);
+    assert_int_equal(extract(ctx, &l, -1, 1), QC_ERR_FAILED);
+    assert_non_null(strstr(qc_ctx_error(ctx)->text, "neck narrower than a quad"));
+    /* cutting off a corner only costs its quads */
+    const int corner[][4] = {{0, 8, 6, 9}, {7, 0, 8, 9}};
+    l = plane_with_holes(10, 4, 0, 2, corner, &r);
+    maps_ok(ctx, extract(ctx, &l, 100 - 6, 1));
+}
+
+static void pinched_vertices_are_split(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {26};
+    /* a slot of one cell from the side */
+    const int notch[][4] = {{0, 16, 20, 20}};
+    maps_list l = plane_with_holes(10, 4, 0, 1, notch, &r);
+    maps_ok(ctx, extract(ctx, &l, 95, 1));
+    const int almost[][4] = {{0, 16, 19, 19}, {21, 21, 23, 40}};
+    l = plane_with_holes(10, 4, 0, 2, almost, &r);
+    /* both slots end at one lattice point: the quads beyond it hang on a vertex */
+    assert_int_equal(extract(ctx, &l, -1, 1), QC_ERR_FAILED);
+}
+
+static void too_small_pieces_are_refused(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {27};
+    maps_list l = maps_plane(4, 0.8, 0.8, 0, 0, 0.1, 0.1, &r);
+    assert_int_equal(extract(ctx, &l, -1, 1), QC_ERR_FAILED);
+    assert_non_null(strstr(qc_ctx_error(ctx)->text, "smaller than a quad"));
+}
+
+static int set_up(void **state) {
+    *state = maps_context();
+    return 0;
+}
+static int tear_down(void **state) {
+    qc_ctx_free(*state);
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(hole_inside_a_cell_stays),
+        cmocka_unit_test(holes_match_the_reference),
+        cmocka_unit_test(turned_planes_keep_their_holes),
+        cmocka_unit_test(merging_holes_are_refused),
+        cmocka_unit_test(narrow_necks),
+        cmocka_unit_test(pinched_vertices_are_split),
+        cmocka_unit_test(too_small_pieces_are_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
