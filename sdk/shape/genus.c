@@ -78,11 +78,11 @@ static void smooth(const qc_mesh *m, const double *from, double *to, int32_t *de
             to[3 * v + i] = 0.5 * (from[3 * v + i] + to[3 * v + i] / degree[v]);
 }
 
-/* The number of steps grows with the square of the subdivision: the same rounding at any
- * resolution. */
+/* The number of steps grows with the square of the subdivision, so that the rounding is the same at
+ * any resolution; up to a limit which is reached at some 200000 faces. */
 qc_status qc__shape_round_off(qc_ctx *ctx, const qc_shape_options *options, qc_mesh **mesh) {
     plate p = plate_of(options->genus);
-    int32_t n = subdivision(options, &p), steps = 2 + (int32_t)(0.25 * n * n);
+    int32_t n = subdivision(options, &p), steps = 2 + (int32_t)fmin(0.25 * n * n, 400);
     const qc_mesh *m = *mesh;
     size_t size = (size_t)m->n_vertices;
     double *a = QC__NEW(ctx, double, 3 * size), *b = QC__NEW(ctx, double, 3 * size);
