@@ -22,12 +22,14 @@ static void fill_table(const cli_option *options, struct poptOption *table) {
     int n = 0;
     for (; options[n].name; n++) {
         const cli_option *o = &options[n];
-        const struct poptOption entry = {o->name, o->letter,
-                                         o->kind == CLI_FLAG ? POPT_ARG_NONE : POPT_ARG_STRING, NULL,
-                                         VALUE_FIRST + n, o->doc, o->argument};
+        const struct poptOption entry = {
+            o->name,    o->letter,       o->kind == CLI_FLAG ? POPT_ARG_NONE : POPT_ARG_STRING,
+            NULL,       VALUE_FIRST + n, o->doc,
+            o->argument};
         table[n] = entry;
     }
-    const struct poptOption help = {"help", 'h', POPT_ARG_NONE, NULL, VALUE_HELP, "this text", NULL};
+    const struct poptOption help = {"help",     'h',         POPT_ARG_NONE, NULL,
+                                    VALUE_HELP, "this text", NULL};
     const struct poptOption end = POPT_TABLEEND;
     table[n] = help;
     table[n + 1] = end;
@@ -46,8 +48,8 @@ static int set_number(const cli_option *o, const char *text) {
         return cli_error(EXIT_USAGE, "--%s: '%s' is not a%s number", o->name, text,
                          o->kind == CLI_INTEGER ? " whole" : "");
     if (value < o->min || value > o->max)
-        return cli_error(EXIT_USAGE, "--%s: %s is out of range; use %g to %g", o->name, text, o->min,
-                         o->max);
+        return cli_error(EXIT_USAGE, "--%s: %s is out of range; use %g to %g", o->name, text,
+                         o->min, o->max);
     if (o->kind == CLI_INTEGER)
         *(long long *)o->target = (long long)value;
     else
@@ -93,17 +95,21 @@ static int set(const cli_option *o, char *text, storage *s) {
     s->text[s->n_texts++] = text;
     switch (o->kind) {
     case CLI_REAL:
-    case CLI_INTEGER: return set_number(o, text);
-    case CLI_CHOICE: return set_choice(o, text);
-    case CLI_LIST: return set_list(o, text, s);
-    default: *(const char **)o->target = text; return -1;
+    case CLI_INTEGER:
+        return set_number(o, text);
+    case CLI_CHOICE:
+        return set_choice(o, text);
+    case CLI_LIST:
+        return set_list(o, text, s);
+    default:
+        *(const char **)o->target = text;
+        return -1;
     }
 }
 
 static int bad_option(poptContext context, const cli_option *options, int code) {
     const char *name = poptBadOption(context, POPT_BADOPTION_NOALIAS);
-    if (code != POPT_ERROR_BADOPT)
-        return cli_error(EXIT_USAGE, "%s: %s", name, poptStrerror(code));
+    if (code != POPT_ERROR_BADOPT) return cli_error(EXIT_USAGE, "%s: %s", name, poptStrerror(code));
     const char *names[MOST_OPTIONS];
     size_t n = 0;
     for (; options[n].name; n++) names[n] = options[n].name;

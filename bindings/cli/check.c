@@ -6,7 +6,8 @@
 
 static const char about[] =
     "Exit status 0: every face has four corners, every edge one or two faces run in opposite\n"
-    "directions, every vertex one fan, no face is degenerate or there twice. 1: something is not so;\n"
+    "directions, every vertex one fan, no face is degenerate or there twice. 1: something is not "
+    "so;\n"
     "the first bad element is named.";
 
 typedef struct settings {
@@ -56,12 +57,12 @@ static int print_json(const figures *f) {
     json_t *root = json_pack(
         "{s:b,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:f,s:f,s:f}", "valid",
         f->valid, "vertices", (int)f->report->quads.vertices, "faces", (int)f->report->quads.faces,
-        "components", t->components, "boundaries", t->boundary_loops, "euler", t->euler, "non_quads",
-        t->non_quads, "irregular", t->irregular, "non_manifold_edges", t->non_manifold_edges,
-        "non_manifold_vertices", t->non_manifold_vertices, "inconsistent_edges",
-        t->inconsistent_edges, "duplicate_faces", t->duplicate_faces, "degenerate_faces",
-        t->degenerate_faces, "unreferenced_vertices", t->unreferenced_vertices, "first_bad_element",
-        t->first_bad_element, "rsd_edge", r.rsd_edge, "rsd_angle", r.rsd_angle,
+        "components", t->components, "boundaries", t->boundary_loops, "euler", t->euler,
+        "non_quads", t->non_quads, "irregular", t->irregular, "non_manifold_edges",
+        t->non_manifold_edges, "non_manifold_vertices", t->non_manifold_vertices,
+        "inconsistent_edges", t->inconsistent_edges, "duplicate_faces", t->duplicate_faces,
+        "degenerate_faces", t->degenerate_faces, "unreferenced_vertices", t->unreferenced_vertices,
+        "first_bad_element", t->first_bad_element, "rsd_edge", r.rsd_edge, "rsd_angle", r.rsd_angle,
         "min_scaled_jacobian", f->report->quads.min_scaled_jacobian);
     if (root && f->against) {
         json_object_set_new(root, "hausdorff_rel", json_real(r.hausdorff_rel));

@@ -5,7 +5,8 @@
 
 static const char about[] =
     "Reads triangles with a texture coordinate at every corner whose transitions across edges are\n"
-    "quarter turns and integer shifts, and writes the quads of the integer isolines: manifold, only\n"
+    "quarter turns and integer shifts, and writes the quads of the integer isolines: manifold, "
+    "only\n"
     "quads, Euler characteristic of the input; or names the place where the map breaks a rule.";
 
 typedef struct settings {
@@ -91,7 +92,8 @@ int cli_extract(int argc, const char **argv) {
         {"plugin", 0, CLI_LIST, &s.plugin, 0, 0, NULL, "X.so", "load a plugin"},
         CLI_COMMON_OPTIONS(s.common),
         {NULL, 0, 0, NULL, 0, 0, NULL, NULL, NULL}};
-    int status = cli_parse(argc, argv, options, 1, 1, "UV.obj -o OUT.obj [options]", about, &arguments);
+    int status =
+        cli_parse(argc, argv, options, 1, 1, "UV.obj -o OUT.obj [options]", about, &arguments);
     if (status >= 0) return status;
     s.input = arguments.positional[0];
     status = s.output ? cli_check_writable(s.output)

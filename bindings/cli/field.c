@@ -3,8 +3,10 @@
 #include <string.h>
 
 static const char about[] =
-    "Computes the smooth cross field that remesh would use and writes it: .rawfield (Directional's\n"
-    "format, the default) or .rosy by the name of the output; one cross for each face of the repaired\n"
+    "Computes the smooth cross field that remesh would use and writes it: .rawfield "
+    "(Directional's\n"
+    "format, the default) or .rosy by the name of the output; one cross for each face of the "
+    "repaired\n"
     "mesh. --smoothest: the smoothest field instead of curvature directions.";
 
 typedef struct settings {
@@ -74,7 +76,8 @@ int cli_field(int argc, const char **argv) {
         {"plugin", 0, CLI_LIST, &s.plugin, 0, 0, NULL, "X.so", "load a plugin"},
         CLI_COMMON_OPTIONS(s.common),
         {NULL, 0, 0, NULL, 0, 0, NULL, NULL, NULL}};
-    int status = cli_parse(argc, argv, options, 1, 1, "IN -o F.rawfield [options]", about, &arguments);
+    int status =
+        cli_parse(argc, argv, options, 1, 1, "IN -o F.rawfield [options]", about, &arguments);
     if (status >= 0) return status;
     s.input = arguments.positional[0];
     status = s.output ? cli_check_writable(s.output)

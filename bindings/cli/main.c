@@ -44,8 +44,7 @@ static int unknown_command(const char *name) {
 }
 
 int main(int argc, char **argv) {
-    if (argc < 2)
-        return cli_error(EXIT_USAGE, "no command given; see quadcover --help");
+    if (argc < 2) return cli_error(EXIT_USAGE, "no command given; see quadcover --help");
     const char *name = argv[1];
     if (strcmp(name, "--version") == 0) {
         printf("quadcover %s\n", qc_version());

@@ -29,13 +29,17 @@ void cli_warning(const char *format, ...) {
 
 static int exit_status(qc_status status, int fallback) {
     switch (status) {
-    case QC_ERR_CANCELLED: return EXIT_INTERRUPTED;
+    case QC_ERR_CANCELLED:
+        return EXIT_INTERRUPTED;
     case QC_ERR_INPUT:
-    case QC_ERR_NON_MANIFOLD: return EXIT_INPUT;
+    case QC_ERR_NON_MANIFOLD:
+        return EXIT_INPUT;
     case QC_ERR_NOT_FOUND:
     case QC_ERR_WIRING:
-    case QC_ERR_ABI: return EXIT_USAGE;
-    default: return fallback;
+    case QC_ERR_ABI:
+        return EXIT_USAGE;
+    default:
+        return fallback;
     }
 }
 

@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 static const char about[] =
-    "Reads a triangle mesh (OBJ, OFF, PLY, STL; polygons are triangulated), computes a cross field, a\n"
-    "seamless parameterization on its four-sheeted covering and the integer grid map, and writes the\n"
-    "quads of its integer isolines. Several components are remeshed one by one at one density; one\n"
+    "Reads a triangle mesh (OBJ, OFF, PLY, STL; polygons are triangulated), computes a cross "
+    "field, a\n"
+    "seamless parameterization on its four-sheeted covering and the integer grid map, and writes "
+    "the\n"
+    "quads of its integer isolines. Several components are remeshed one by one at one density; "
+    "one\n"
     "that fails is reported and left out.\n\n"
     "Density: --quads N (default 10000), --edge-length L or --edge-length-rel R.\n"
     "--set step.param=value changes any parameter of any step; `quadcover stages` lists them.";
@@ -65,8 +68,7 @@ static int parse(int argc, const char **argv, settings *s, cli_arguments *argume
         {"plugin", 0, CLI_LIST, &s->plugin, 0, 0, NULL, "X.so", "load a plugin"},
         {"stats", 0, CLI_TEXT, &s->stats, 0, 0, NULL, "S.json", "write statistics"},
         {"report", 0, CLI_TEXT, &s->report, 0, 0, NULL, "R.html", "write a report (not built yet)"},
-        {"strict", 0, CLI_FLAG, &s->strict, 0, 0, NULL, NULL,
-         "fail when a single component fails"},
+        {"strict", 0, CLI_FLAG, &s->strict, 0, 0, NULL, NULL, "fail when a single component fails"},
         {"seed", 0, CLI_INTEGER, &s->seed, 0, 9007199254740992.0, NULL, "N",
          "seed of randomised searches"},
         CLI_COMMON_OPTIONS(s->common),
@@ -103,8 +105,9 @@ static int check_settings(const settings *s) {
     const bool step_flags = s->quads > 0 || s->edge_length > 0 || s->edge_length_rel > 0 ||
                             s->sharp > 0 || s->no_features || s->field;
     if (s->pipeline && step_flags)
-        return cli_error(EXIT_USAGE, "--pipeline brings its own density, features and field; change "
-                                     "them with --set step.param=value");
+        return cli_error(EXIT_USAGE,
+                         "--pipeline brings its own density, features and field; change "
+                         "them with --set step.param=value");
     if (s->field && access(s->field, R_OK) != 0)
         return cli_error(EXIT_INPUT, "%s: cannot read the field; name a .rawfield or .rosy file",
                          s->field);
@@ -147,8 +150,7 @@ static int compute(run *r, const settings *s) {
 
 static int write_mesh(run *r, const qc_polygon_mesh *mesh, const char *path, const char *what) {
     if (!path) return EXIT_DONE;
-    if (!mesh)
-        return cli_error(EXIT_FAILED, "%s: no step of the pipeline makes %s", path, what);
+    if (!mesh) return cli_error(EXIT_FAILED, "%s: no step of the pipeline makes %s", path, what);
     if (qc_polygon_mesh_write(r->session.ctx, mesh, path, "quadcover " QC_VERSION_STRING) != QC_OK)
         return cli_session_error(&r->session, path, EXIT_FAILED);
     return EXIT_DONE;
@@ -169,9 +171,9 @@ static int write_field(run *r, const char *path) {
 static int write_stats(run *r, const settings *s) {
     if (!s->stats) return EXIT_DONE;
     r->times.total = cli_seconds() - r->session.start;
-    char *text = cli_stats_json(r->result.report, r->pipeline, s->input,
-                                s->pipeline ? "pipeline" : "fast", &r->times, r->n_warnings,
-                                r->warning);
+    char *text =
+        cli_stats_json(r->result.report, r->pipeline, s->input, s->pipeline ? "pipeline" : "fast",
+                       &r->times, r->n_warnings, r->warning);
     if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->stats);
     const int status = cli_write_text(s->stats, text);
     free(text);

@@ -15,7 +15,9 @@ static void on_signal(int number) {
     interrupted = 1;
 }
 
-bool cli_interrupted(void) { return interrupted != 0; }
+bool cli_interrupted(void) {
+    return interrupted != 0;
+}
 
 double cli_seconds(void) {
     struct timespec t;

@@ -24,8 +24,8 @@ static int print_list(void) {
 
 static qc_status to_polygons(qc_ctx *ctx, const qc_mesh *mesh, qc_polygon_mesh **out) {
     qc_polygon_mesh *p = NULL;
-    const qc_status status =
-        qc_polygon_mesh_create(ctx, mesh->n_vertices, mesh->n_faces, 3 * mesh->n_faces, 0, 0, 0, &p);
+    const qc_status status = qc_polygon_mesh_create(ctx, mesh->n_vertices, mesh->n_faces,
+                                                    3 * mesh->n_faces, 0, 0, 0, &p);
     if (status != QC_OK) return status;
     memcpy(p->position, mesh->position, 3 * sizeof(double) * (size_t)mesh->n_vertices);
     memcpy(p->face_vertex, mesh->face_vertex, 3 * sizeof(int32_t) * (size_t)mesh->n_faces);
@@ -48,7 +48,8 @@ static int create(cli_session *session, const char *name, const settings *s) {
     if (qc_shape_create(ctx, name, &options, &mesh) != QC_OK)
         status = cli_session_error(session, NULL, EXIT_USAGE);
     else if (to_polygons(ctx, mesh, &polygons) != QC_OK ||
-             qc_polygon_mesh_write(ctx, polygons, s->output, "quadcover " QC_VERSION_STRING) != QC_OK)
+             qc_polygon_mesh_write(ctx, polygons, s->output, "quadcover " QC_VERSION_STRING) !=
+                 QC_OK)
         status = cli_session_error(session, NULL, EXIT_FAILED);
     qc_object_release(mesh);
     qc_object_release(polygons);

@@ -19,12 +19,12 @@ static void print_default(const qc_param *p, char *text, size_t size) {
 
 static void print_range(const qc_param *p, char *text, size_t size) {
     text[0] = '\0';
-    if (p->type == QC_INT || p->type == QC_REAL)
-        snprintf(text, size, "%g to %g", p->min, p->max);
+    if (p->type == QC_INT || p->type == QC_REAL) snprintf(text, size, "%g to %g", p->min, p->max);
     if (p->type != QC_ENUM) return;
     size_t used = 0;
     for (int i = 0; p->choices[i] && used < size; i++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", p->choices[i]);
+        used +=
+            (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", p->choices[i]);
 }
 
 static void print_ports(const qc_stage *stage, uint32_t n,
@@ -38,8 +38,8 @@ static void print_ports(const qc_stage *stage, uint32_t n,
 }
 
 static void print_stage(const qc_stage *stage) {
-    printf("%s %s - %s\n\n%s\n\nSource: %s\n\n", stage->id, stage->version, stage->brief, stage->doc,
-           stage->cite);
+    printf("%s %s - %s\n\n%s\n\nSource: %s\n\n", stage->id, stage->version, stage->brief,
+           stage->doc, stage->cite);
     print_ports(stage, stage->n_in, qc_stage_in, "Inputs");
     print_ports(stage, stage->n_out, qc_stage_out, "Outputs");
     if (stage->n_params > 0) printf("Parameters:\n");
@@ -66,8 +66,8 @@ static void markdown_ports(const qc_stage *stage, uint32_t n,
 }
 
 static void print_markdown(const qc_stage *stage) {
-    printf("## %s\n\n%s (version %s). Source: %s.\n\n%s\n\n", stage->id, stage->brief, stage->version,
-           stage->cite, stage->doc);
+    printf("## %s\n\n%s (version %s). Source: %s.\n\n%s\n\n", stage->id, stage->brief,
+           stage->version, stage->cite, stage->doc);
     markdown_ports(stage, stage->n_in, qc_stage_in, "input");
     markdown_ports(stage, stage->n_out, qc_stage_out, "output");
     if (stage->n_params > 0)
@@ -113,8 +113,8 @@ static int print(qc_registry *registry, const qc_stage *one, bool json, bool mar
 }
 
 int cli_stages(int argc, const char **argv) {
-    static const char about[] =
-        "Lists the registered stages, those of plugins included; with NAME: its ports and parameters.";
+    static const char about[] = "Lists the registered stages, those of plugins included; with "
+                                "NAME: its ports and parameters.";
     bool json = false, markdown = false;
     cli_list plugin = {0, NULL};
     cli_common common = {1, 0, CLI_PROGRESS_NONE};

@@ -11,11 +11,16 @@ static json_t *port_json(const qc_port *port) {
 
 static json_t *default_json(const qc_param *p) {
     switch (p->type) {
-    case QC_BOOL: return json_boolean(p->def != 0);
-    case QC_INT: return json_integer((json_int_t)p->def);
-    case QC_REAL: return json_real(p->def);
-    case QC_ENUM: return json_string(p->choices[(int)p->def]);
-    default: return json_null();
+    case QC_BOOL:
+        return json_boolean(p->def != 0);
+    case QC_INT:
+        return json_integer((json_int_t)p->def);
+    case QC_REAL:
+        return json_real(p->def);
+    case QC_ENUM:
+        return json_string(p->choices[(int)p->def]);
+    default:
+        return json_null();
     }
 }
 
@@ -43,9 +48,9 @@ static json_t *stage_json(const qc_stage *stage) {
         json_array_append_new(out, port_json(qc_stage_out(stage, i)));
     for (uint32_t i = 0; i < stage->n_params; i++)
         json_array_append_new(params, param_json(qc_stage_param(stage, i)));
-    return json_pack("{s:s,s:s,s:s,s:s,s:s,s:o,s:o,s:o}", "id", stage->id, "version", stage->version,
-                     "brief", stage->brief, "doc", stage->doc, "cite", stage->cite, "in", in, "out",
-                     out, "params", params);
+    return json_pack("{s:s,s:s,s:s,s:s,s:s,s:o,s:o,s:o}", "id", stage->id, "version",
+                     stage->version, "brief", stage->brief, "doc", stage->doc, "cite", stage->cite,
+                     "in", in, "out", out, "params", params);
 }
 
 char *cli_stages_json(qc_registry *registry, const qc_stage *one) {

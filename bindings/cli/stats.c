@@ -19,20 +19,26 @@ cli_figures cli_report_figures(const qc_report *r) {
     if (r->quads.edge_sum > 0)
         f.rsd_edge = 100 * deviation(r->quads.edges, r->quads.edge_sum, r->quads.edge_sum2) *
                      r->quads.edges / r->quads.edge_sum;
-    f.rsd_angle = 100 * deviation(r->quads.corners, r->quads.angle_sum, r->quads.angle_sum2) / HALF_PI;
+    f.rsd_angle =
+        100 * deviation(r->quads.corners, r->quads.angle_sum, r->quads.angle_sum2) / HALF_PI;
     if (r->quads.diagonal > 0) {
         f.hausdorff_rel = r->quads.hausdorff / r->quads.diagonal;
         if (r->quads.distance_samples > 0)
-            f.mean_dist_rel =
-                r->quads.distance_sum / r->quads.distance_samples / r->quads.diagonal;
+            f.mean_dist_rel = r->quads.distance_sum / r->quads.distance_samples / r->quads.diagonal;
     }
     if (r->uv.area > 0) f.arap_mean = r->uv.arap_sum / r->uv.area;
     return f;
 }
 
-static json_t *number(double x) { return isfinite(x) ? json_real(x) : json_null(); }
-static json_t *integer(int64_t n) { return json_integer((json_int_t)n); }
-static double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+static json_t *number(double x) {
+    return isfinite(x) ? json_real(x) : json_null();
+}
+static json_t *integer(int64_t n) {
+    return json_integer((json_int_t)n);
+}
+static double percent(double part, double whole) {
+    return whole > 0 ? 100 * part / whole : 0;
+}
 
 /* Counts by quarter index; -1 and +1 always, others where there are any. */
 static json_t *index_counts(const qc_report *r) {
@@ -56,14 +62,14 @@ static json_t *energies(const qc_report *r) {
 }
 
 static json_t *quads(const qc_report *r, const cli_figures *f) {
-    return json_pack(
-        "{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "vertices", integer(r->quads.vertices),
-        "faces", integer(r->quads.faces), "non_quads", integer(r->quads.non_quads), "irregular",
-        integer(r->quads.irregular), "euler", integer(r->quads.euler), "components",
-        integer(r->quads.components), "boundaries", integer(r->quads.boundaries), "rsd_edge",
-        number(f->rsd_edge), "rsd_angle", number(f->rsd_angle), "min_scaled_jacobian",
-        number(r->quads.min_scaled_jacobian), "hausdorff_rel", number(f->hausdorff_rel),
-        "mean_dist_rel", number(f->mean_dist_rel));
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "vertices",
+                     integer(r->quads.vertices), "faces", integer(r->quads.faces), "non_quads",
+                     integer(r->quads.non_quads), "irregular", integer(r->quads.irregular), "euler",
+                     integer(r->quads.euler), "components", integer(r->quads.components),
+                     "boundaries", integer(r->quads.boundaries), "rsd_edge", number(f->rsd_edge),
+                     "rsd_angle", number(f->rsd_angle), "min_scaled_jacobian",
+                     number(r->quads.min_scaled_jacobian), "hausdorff_rel",
+                     number(f->hausdorff_rel), "mean_dist_rel", number(f->mean_dist_rel));
 }
 
 static json_t *seconds(const qc_pipeline *pipeline, const cli_times *times) {
@@ -108,9 +114,9 @@ char *cli_stats_json(const qc_report *r, const qc_pipeline *pipeline, const char
         integer(r->input.faces), "genus", integer(r->input.genus), "boundaries",
         integer(r->input.boundaries), "components", integer(r->input.components), /**/
         "density", "edge_length", number(r->density.edge_length), "target_quads",
-        number(r->density.target_quads), /**/
+        number(r->density.target_quads),                                                      /**/
         "field", "singularities", integer(r->field.singularities), "index4", index_counts(r), /**/
-        "energy", energies(r),                                                            /**/
+        "energy", energies(r),                                                                /**/
         "uv", "flipped", integer(r->uv.flipped), "degenerate", integer(r->uv.degenerate),
         "max_seam_error", number(r->uv.max_seam_error), "arap_mean", number(f.arap_mean), /**/
         "quads", quads(r, &f), "seconds", seconds(pipeline, times), "peak_rss_mb",

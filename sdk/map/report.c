@@ -2,7 +2,9 @@
 #include "sdk/map/report.h"
 #include <math.h>
 
-static void destroy(qc_object *object) { qc__free(object); }
+static void destroy(qc_object *object) {
+    qc__free(object);
+}
 
 qc_status qc_report_create(qc_ctx *ctx, qc_report **out) {
     qc_report *report = QC__ZERO(ctx, qc_report, 1);
@@ -12,7 +14,8 @@ qc_status qc_report_create(qc_ctx *ctx, qc_report **out) {
     return QC_OK;
 }
 
-/* One edge length for two parts: the one which makes the joint number of quads on the joint area. */
+/* One edge length for two parts: the one which makes the joint number of quads on the joint area.
+ */
 static double joint_edge_length(const qc_report *a, const qc_report *b) {
     const double h = a->density.edge_length, g = b->density.edge_length;
     const double n = a->density.target_quads, m = b->density.target_quads;

@@ -1,6 +1,6 @@
 /* Figures of a parameterization: orientation of its triangles, mismatch across seams, and the
- * as-rigid-as-possible distortion (thesis 6.1): per triangle the squared distance of the Jacobian, in units
- * of the target edge length, from the nearest rotation. */
+ * as-rigid-as-possible distortion (thesis 6.1): per triangle the squared distance of the Jacobian,
+ * in units of the target edge length, from the nearest rotation. */
 #include "sdk/map/report.h"
 #include <math.h>
 
@@ -12,9 +12,9 @@ static double determinant(double a, double b, double c, double d) {
     return fma(a, d, -bc) + fma(-b, c, bc);
 }
 
-/* Squared Frobenius distance of J to the rotations is s1^2 + s2^2 + 2 - 2 (s1 + s2) with s2 < 0 for a
- * reversed triangle, and s1 + s2 = |(J11 + J22) + i (J21 - J12)|. p: plane coordinates of the triangle
- * with the first corner at the origin; f: parameters relative to the first corner. */
+/* Squared Frobenius distance of J to the rotations is s1^2 + s2^2 + 2 - 2 (s1 + s2) with s2 < 0 for
+ * a reversed triangle, and s1 + s2 = |(J11 + J22) + i (J21 - J12)|. p: plane coordinates of the
+ * triangle with the first corner at the origin; f: parameters relative to the first corner. */
 static double rigid_distance2(const double p[3], const double f[4], double edge_length) {
     const double inverse = edge_length / (p[0] * p[2]); /* p1 = (p[0], 0), p2 = (p[1], p[2]) */
     const double j11 = f[0] * p[2] * inverse, j21 = f[1] * p[2] * inverse;

@@ -1,5 +1,5 @@
-/* Regularity of a quad mesh as in Table 7.1 of the thesis: sums of edge lengths and corner angles, and
- * the smallest scaled Jacobian (sine of the corner angle against the face normal). */
+/* Regularity of a quad mesh as in Table 7.1 of the thesis: sums of edge lengths and corner angles,
+ * and the smallest scaled Jacobian (sine of the corner angle against the face normal). */
 #include "sdk/map/report.h"
 #include <math.h>
 
@@ -18,7 +18,9 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static double length(const double a[3]) { return sqrt(dot(a, a)); }
+static double length(const double a[3]) {
+    return sqrt(dot(a, a));
+}
 
 /* Twice the area vector of a polygon. */
 static void area_vector(const qc_polygon_mesh *m, const int32_t *v, int32_t n, double normal[3]) {

@@ -4,9 +4,8 @@
 #include "sdk/remesh/internal.h"
 
 qc_status qc__collection_create(qc_ctx *ctx, int32_t n, qc__collection *out) {
-    qc__collection all = {
-        QC__ZERO(ctx, qc_polygon_mesh *, n), QC__ZERO(ctx, qc_polygon_mesh *, n),
-        QC__ZERO(ctx, qc_face_field *, n), QC__ZERO(ctx, qc_report *, n)};
+    qc__collection all = {QC__ZERO(ctx, qc_polygon_mesh *, n), QC__ZERO(ctx, qc_polygon_mesh *, n),
+                          QC__ZERO(ctx, qc_face_field *, n), QC__ZERO(ctx, qc_report *, n)};
     *out = all;
     if (all.quads && all.uv && all.field && all.report) return QC_OK;
     qc__collection_clear(out, 0);
@@ -27,7 +26,8 @@ void qc__collection_clear(qc__collection *all, int32_t n) {
     *all = (qc__collection){NULL, NULL, NULL, NULL};
 }
 
-/* The latest object of a type which the run itself made, with a reference; NULL when there is none. */
+/* The latest object of a type which the run itself made, with a reference; NULL when there is none.
+ */
 static void *made(const qc_bag *before, const qc_bag *bag, const char *type) {
     const void *object = qc_bag_latest(bag, type);
     return object == qc_bag_latest(before, type) ? NULL : qc_object_retain(object);
@@ -42,8 +42,8 @@ qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const 
     return map ? qc_corner_map_to_polygons(ctx, map, &all->uv[c]) : QC_OK;
 }
 
-/* Union of the parts which are there, in order; NULL when there is none. With source_face = true the
- * source faces become those of the input. */
+/* Union of the parts which are there, in order; NULL when there is none. With source_face = true
+ * the source faces become those of the input. */
 static qc_status merge_polygons(qc_ctx *ctx, qc_polygon_mesh *const *part, const qc__parts *parts,
                                 bool source_face, qc_polygon_mesh **out) {
     const qc_polygon_mesh **list = QC__NEW(ctx, const qc_polygon_mesh *, parts->n);

@@ -12,9 +12,9 @@ static const step before_field[] = {
 static const step computed_field[] = {{"curvature", "qc.field.curvature"},
                                       {"smooth", "qc.field.smooth"}};
 static const step imported_field[] = {{"field", "qc.field.import"}};
-static const step after_field[] = {
-    {"matching", "qc.matching"}, {"hodge", "qc.hodge"},     {"round", "qc.round"},
-    {"untangle", "qc.untangle"}, {"extract", "qc.extract"}, {"measure", "qc.measure"}};
+static const step after_field[] = {{"matching", "qc.matching"}, {"hodge", "qc.hodge"},
+                                   {"round", "qc.round"},       {"untangle", "qc.untangle"},
+                                   {"extract", "qc.extract"},   {"measure", "qc.measure"}};
 
 #define APPEND(pipeline, steps) append(pipeline, steps, sizeof(steps) / sizeof *(steps))
 
@@ -64,11 +64,12 @@ static qc_status set_seed(qc_pipeline *pipeline, uint64_t seed) {
 static qc_status fill(qc_ctx *ctx, qc_pipeline *pipeline, const qc_default_pipeline_options *o) {
     qc_status status = APPEND(pipeline, before_field);
     if (status == QC_OK)
-        status = o->field_path ? APPEND(pipeline, imported_field) : APPEND(pipeline, computed_field);
+        status =
+            o->field_path ? APPEND(pipeline, imported_field) : APPEND(pipeline, computed_field);
     if (status == QC_OK) status = APPEND(pipeline, after_field);
     if (status == QC_OK) status = set_density(ctx, pipeline, o);
     if (status == QC_OK && o->field_path)
-        status = qc_pipeline_set(pipeline, "field", "path", o->field_path);
+        status = qc_pipeline_set(pipeline, "field", "file", o->field_path);
     if (status == QC_OK && o->crease_angle > 0)
         status = set_real(pipeline, "features", "angle", o->crease_angle);
     if (status == QC_OK && o->crease_angle < 0) status = qc_pipeline_remove(pipeline, 1);

@@ -39,7 +39,8 @@ qc_status qc__density_share(qc_pipeline *pipeline, const qc__density *density, c
         return set(pipeline, density->step, "edge_length",
                    density->edge_length_rel * mesh->diagonal);
     const double quads = density->quads > 0 ? density->quads : QC__DEFAULT_QUADS;
-    return set(pipeline, density->step, "quads", fmax(FEWEST_QUADS, round(quads * area / mesh->area)));
+    return set(pipeline, density->step, "quads",
+               fmax(FEWEST_QUADS, round(quads * area / mesh->area)));
 }
 
 qc_status qc__density_restore(qc_pipeline *pipeline, const qc__density *density) {

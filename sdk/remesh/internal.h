@@ -8,23 +8,23 @@
 
 #define QC__DEFAULT_QUADS 10000.0
 
-/* --- connected components ----------------------------------------------------------------------- */
+/* --- connected components -------------------------------------------------------------------- */
 
 /* Faces and vertices of a mesh sorted by component, each in increasing order. */
 typedef struct qc__parts {
     const qc_mesh *mesh;
     int32_t n;
-    int32_t *face_start, *face;     /* n + 1, n_faces                                               */
-    int32_t *vertex_start, *vertex; /* n + 1, n_vertices                                            */
-    int32_t *local;                 /* n_vertices: number in its component                          */
-    double *area;                   /* n                                                            */
+    int32_t *face_start, *face;     /* n + 1, n_faces */
+    int32_t *vertex_start, *vertex; /* n + 1, n_vertices */
+    int32_t *local;                 /* n_vertices: number in its component */
+    double *area;                   /* n */
 } qc__parts;
 qc_status qc__parts_create(qc_ctx *ctx, const qc_mesh *mesh, qc__parts *out);
 void qc__parts_clear(qc__parts *parts);
 /* Component c as a mesh whose source numbers are those of parts->mesh (so: of the input). */
 qc_status qc__parts_mesh(qc_ctx *ctx, const qc__parts *parts, int32_t c, qc_mesh **out);
 
-/* --- density ------------------------------------------------------------------------------------ */
+/* --- density --------------------------------------------------------------------------------- */
 
 /* The density parameters of one qc.size step as they were set. */
 typedef struct qc__density {
@@ -38,10 +38,9 @@ qc_status qc__density_share(qc_pipeline *pipeline, const qc__density *density, c
                             double area);
 qc_status qc__density_restore(qc_pipeline *pipeline, const qc__density *density);
 
-/* --- results ------------------------------------------------------------------------------------ */
+/* --- results --------------------------------------------------------------------------------- */
 
-qc_status qc__warn(qc_ctx *ctx, qc_remesh_result *result, const char *format, ...)
-    QC__PRINTF(3, 4);
+qc_status qc__warn(qc_ctx *ctx, qc_remesh_result *result, const char *format, ...) QC__PRINTF(3, 4);
 qc_status qc__warn_repairs(qc_ctx *ctx, const qc_repair_report *report, qc_remesh_result *result);
 /* Names component c by number, size and place, with the context's last error. */
 qc_status qc__warn_failure(qc_ctx *ctx, const qc__parts *parts, int32_t c,

@@ -36,8 +36,7 @@ qc_status qc__parts_create(qc_ctx *ctx, const qc_mesh *mesh, qc__parts *out) {
         bucket(mesh->n_vertices, group, n, p.vertex_start, p.vertex);
         for (int32_t i = 0; i < mesh->n_vertices; i++)
             p.local[p.vertex[i]] = i - p.vertex_start[group[p.vertex[i]]];
-        for (int32_t t = 0; t < mesh->n_faces; t++)
-            p.area[mesh->face_component[t]] += face_area[t];
+        for (int32_t t = 0; t < mesh->n_faces; t++) p.area[mesh->face_component[t]] += face_area[t];
         *out = p;
     } else {
         qc__parts_clear(&p);
@@ -80,8 +79,8 @@ qc_status qc__parts_mesh(qc_ctx *ctx, const qc__parts *parts, int32_t c, qc_mesh
                     parts->local[m->face_vertex[3 * (int64_t)face[i] + k]];
             source_face[i] = m->source_face ? m->source_face[face[i]] : face[i];
         }
-        status = qc_mesh_create_from(ctx, n_vertices, position, n_faces, face_vertex,
-                                     source_vertex, source_face, out);
+        status = qc_mesh_create_from(ctx, n_vertices, position, n_faces, face_vertex, source_vertex,
+                                     source_face, out);
     }
     qc__free(position);
     qc__free(face_vertex);

@@ -50,10 +50,10 @@ qc_status qc__warn_failure(qc_ctx *ctx, const qc__parts *parts, int32_t c,
             hi[k] = fmax(hi[k], x);
         }
     const qc_error *error = qc_ctx_error(ctx);
-    return qc__warn(ctx, result,
-                    "component %d of %d (%d faces, from (%g, %g, %g) to (%g, %g, %g)) has no result: "
-                    "%s: %s",
-                    (int)c + 1, (int)parts->n,
-                    (int)(parts->face_start[c + 1] - parts->face_start[c]), lo[0], lo[1], lo[2],
-                    hi[0], hi[1], hi[2], error->stage, error->text);
+    return qc__warn(
+        ctx, result,
+        "component %d of %d (%d faces, from (%g, %g, %g) to (%g, %g, %g)) has no result: "
+        "%s: %s",
+        (int)c + 1, (int)parts->n, (int)(parts->face_start[c + 1] - parts->face_start[c]), lo[0],
+        lo[1], lo[2], hi[0], hi[1], hi[2], error->stage, error->text);
 }

@@ -31,9 +31,11 @@ const qc_stage qc_stage_measure = {
     "qc.measure",
     "1.0",
     "Measure the map and the quads: valences, angles, distortion, distance",
-    "Counts flipped triangles and seam mismatch of the parameterization and its as-rigid-as-possible "
+    "Counts flipped triangles and seam mismatch of the parameterization and its "
+    "as-rigid-as-possible "
     "distortion (area-weighted mean of the squared distance of the Jacobian from the rotations); "
-    "topology, edge lengths, angles and scaled Jacobian of the quads; and their two-sided distance to "
+    "topology, edge lengths, angles and scaled Jacobian of the quads; and their two-sided distance "
+    "to "
     "the surface, sampled at the vertices, edge midpoints and face centres of the quads and at the "
     "vertices of the surface.",
     "thesis chapter 7, Table 7.1; 6.1 (as-rigid-as-possible energy)",

@@ -12,53 +12,55 @@
 extern "C" {
 #endif
 
-/* --- the default pipeline ----------------------------------------------------------------------- */
+/* --- the default pipeline -------------------------------------------------------------------- */
 
 typedef struct qc_default_pipeline_options {
     uint32_t struct_size;
     /* Density: at most one is > 0; all 0 = the default of stage qc.size. */
-    double quads;             /* target number of quads                                             */
-    double edge_length;       /* in the units of the mesh                                           */
-    double edge_length_rel;   /* in units of the bounding box diagonal                              */
-    double crease_angle;      /* degrees; 0 = default (35); < 0: neither creases nor boundaries      */
-    const char *field_path;   /* .rawfield or .rosy to use instead of a computed field; NULL = none  */
-    uint64_t seed;            /* of stages which have one; 0 = their default                        */
+    double quads;           /* target number of quads */
+    double edge_length;     /* in the units of the mesh */
+    double edge_length_rel; /* in units of the bounding box diagonal */
+    double crease_angle;    /* degrees; 0 = default (35); < 0: neither creases nor boundaries */
+    const char *field_path; /* .rawfield or .rosy to use instead of a computed field; NULL = none */
+    uint64_t seed;          /* of stages which have one; 0 = their default */
 } qc_default_pipeline_options;
-#define QC_DEFAULT_PIPELINE_OPTIONS_INIT \
+#define QC_DEFAULT_PIPELINE_OPTIONS_INIT                                                           \
     { sizeof(qc_default_pipeline_options), 0.0, 0.0, 0.0, 0.0, NULL, 0 }
 
 /* repair, features, size, curvature and smooth (or field, when a file is given), matching, hodge,
- * round, untangle, extract, measure. Change it with qc_pipeline_set, _insert, _remove. options NULL =
- * defaults. Errors: ARGUMENT (densities or a range), NOT_FOUND (a stage is not registered), NOMEM. */
+ * round, untangle, extract, measure. Change it with qc_pipeline_set, _insert, _remove. options NULL
+ * = defaults. Errors: ARGUMENT (densities or a range), NOT_FOUND (a stage is not registered),
+ * NOMEM. */
 QC_API qc_status qc_default_pipeline(qc_ctx *ctx, qc_registry *registry,
-                                     const qc_default_pipeline_options *options,
-                                     qc_pipeline **out);
+                                     const qc_default_pipeline_options *options, qc_pipeline **out);
 
-/* --- remeshing ---------------------------------------------------------------------------------- */
+/* --- remeshing ------------------------------------------------------------------------------- */
 
 typedef struct qc_remesh_options {
     uint32_t struct_size;
-    int32_t strict; /* 1: a component which fails fails the call                                     */
+    int32_t strict; /* 1: a component which fails fails the call */
 } qc_remesh_options;
-#define QC_REMESH_OPTIONS_INIT { sizeof(qc_remesh_options), 0 }
+#define QC_REMESH_OPTIONS_INIT                                                                     \
+    { sizeof(qc_remesh_options), 0 }
 
 /* Members are NULL when no step made them. */
 typedef struct qc_remesh_result {
-    qc_mesh *mesh;          /* the whole surface after the first steps (repaired)                    */
-    qc_polygon_mesh *quads; /* source_face counts faces of the input                                 */
-    qc_polygon_mesh *uv;    /* the triangles with one vt per corner                                   */
-    qc_face_field *field;   /* cross field on `mesh`; components that failed have a constant one      */
-    qc_report *report;      /* sums over the components; report->input is that of `mesh`              */
-    int32_t n_failed;       /* components without a result                                           */
+    qc_mesh *mesh;          /* the whole surface after the first steps (repaired) */
+    qc_polygon_mesh *quads; /* source_face counts faces of the input */
+    qc_polygon_mesh *uv;    /* the triangles with one vt per corner */
+    qc_face_field *field;   /* cross field on `mesh`; components that failed have a constant one */
+    qc_report *report;      /* sums over the components; report->input is that of `mesh` */
+    int32_t n_failed;       /* components without a result */
     int32_t n_warnings;
-    char **warning; /* one line each: repairs, components that failed                              */
+    char **warning; /* one line each: repairs, components that failed */
 } qc_remesh_result;
 
-/* Runs the steps up to and including the first that outputs a qc.mesh/1 on the whole input (bag name
- * "input"), then the others once per connected component, in order. A target number of quads is shared
- * by area, a relative edge length is made absolute once (parameters of the steps of stage qc.size). A
- * component that fails becomes a warning which names it, the stage and the reason, unless strict or
- * unless all fail. Errors: those of the stages (qc_error.stage = the step); CANCELLED. */
+/* Runs the steps up to and including the first that outputs a qc.mesh/1 on the whole input (bag
+ * name "input"), then the others once per connected component, in order. A target number of quads
+ * is shared by area, a relative edge length is made absolute once (parameters of the steps of stage
+ * qc.size). A component that fails becomes a warning which names it, the stage and the reason,
+ * unless strict or unless all fail. Errors: those of the stages (qc_error.stage = the step);
+ * CANCELLED. */
 QC_API qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_mesh *input,
                            const qc_remesh_options *options, qc_remesh_result *result);
 /* Releases all members and zeroes the struct. NULL is fine. */

@@ -1,0 +1,38 @@
+# Thin front for CMake; every target first makes sure the packages are there.
+PREFIX ?= /usr/local
+MESH   ?=
+QUADS  ?= 5000
+JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
+
+.PHONY: build setup demo check format check-format install clean
+
+build: setup
+	cmake --preset release >/dev/null
+	cmake --build build -j $(JOBS)
+
+setup:
+	@sh cmake/setup-debian.sh
+
+# MESH=file.obj: remesh that; otherwise the knot of the 2007 paper, irregular and noisy.
+demo: build
+	@sh bindings/cli/demo.sh build/bin/quadcover "$(MESH)" "$(QUADS)"
+
+# clang without warnings, unit tests under ASan and UBSan; then all tests of the release
+# build, whose summary is the last thing printed.
+check: build
+	cmake --preset clang >/dev/null
+	cmake --build build-clang -j $(JOBS)
+	cmake --preset asan-ubsan >/dev/null
+	cmake --build build-asan-ubsan -j $(JOBS)
+	cd build-asan-ubsan && ctest -R '^unit/' -j $(JOBS) --output-on-failure
+	cd build && ctest -j $(JOBS) --output-on-failure
+
+# Formatting of all tracked sources by .clang-format.
+format check-format: setup
+	sh cmake/format.sh $@
+
+install: build
+	cmake --install build --prefix "$(PREFIX)"
+
+clean:
+	rm -rf build build-debug build-clang build-asan-ubsan build-tsan demo
