@@ -19,14 +19,36 @@ static void *resize(void *user, void *p, size_t old_size, size_t new_size) {
         free(p);
         return NULL;
     }
-    if (new_size > (size_t)1 << 20) limit_hit++; /* files here have 4 KB at most                      */
+    if (new_size > (size_t)1 << 20)
+        limit_hit++; /* files here have 4 KB at most                      */
     return realloc(p, new_size);
 }
 
 static void mutate(bytes *b, uint64_t *seed) {
-    static const char *const words[] = {"-1", "nan", "inf", "4294967295", "99999999999", "0", "\\\n", "/", "v ",
-                                        "f ", "\n", "#", "1e400", "-", "element face 7\n", "property list char int x\n",
-                                        "end_header\n", "OFF\n", "solid ", "endloop", "outer loop", "\r", "2 ", "l 1 2 "};
+    static const char *const words[] = {"-1",
+                                        "nan",
+                                        "inf",
+                                        "4294967295",
+                                        "99999999999",
+                                        "0",
+                                        "\\\n",
+                                        "/",
+                                        "v ",
+                                        "f ",
+                                        "\n",
+                                        "#",
+                                        "1e400",
+                                        "-",
+                                        "element face 7\n",
+                                        "property list char int x\n",
+                                        "end_header\n",
+                                        "OFF\n",
+                                        "solid ",
+                                        "endloop",
+                                        "outer loop",
+                                        "\r",
+                                        "2 ",
+                                        "l 1 2 "};
     for (uint64_t n = 1 + random_below(seed, 4); n > 0; n--) {
         size_t at = (size_t)random_below(seed, b->n + 1);
         const char *word = words[random_below(seed, sizeof words / sizeof *words)];
@@ -58,7 +80,8 @@ static void mutate(bytes *b, uint64_t *seed) {
 static void check_mesh(qc_ctx *ctx, const qc_polygon_mesh *m) {
     assert_int_equal(m->face_offset[0], 0);
     assert_int_equal(m->face_offset[m->n_faces], m->n_corners);
-    for (int32_t f = 0; f < m->n_faces; f++) assert_true(m->face_offset[f + 1] - m->face_offset[f] >= 3);
+    for (int32_t f = 0; f < m->n_faces; f++)
+        assert_true(m->face_offset[f + 1] - m->face_offset[f] >= 3);
     for (int32_t c = 0; c < m->n_corners; c++) {
         assert_in_range(m->face_vertex[c], 0, m->n_vertices - 1);
         if (m->corner_uv) assert_true(m->corner_uv[c] >= -1 && m->corner_uv[c] < m->n_uvs);
@@ -96,7 +119,8 @@ static void test_mutations(void **state) {
             assert_null(m);
             assert_int_equal(status, QC_ERR_INPUT);
             assert_null(strpbrk(qc_ctx_error(ctx)->text, "\r\n"));
-            assert_true(qc_ctx_error(ctx)->where >= 0 && qc_ctx_error(ctx)->where <= (int64_t)sizeof b.data);
+            assert_true(qc_ctx_error(ctx)->where >= 0 &&
+                        qc_ctx_error(ctx)->where <= (int64_t)sizeof b.data);
         }
     }
     qc_ctx_free(ctx);

@@ -13,10 +13,10 @@
 
 typedef struct qc__text {
     qc_ctx *ctx;
-    const char *name; /* for messages                                                             */
+    const char *name; /* for messages */
     const char *begin, *p, *end;
-    int64_t line; /* 1-based line of p                                                            */
-    bool continued; /* a backslash before the end of a line joins it with the next (OBJ)           */
+    int64_t line;   /* 1-based line of p */
+    bool continued; /* a backslash before the end of a line joins it with the next (OBJ) */
 } qc__text;
 
 /* Fails with INPUT, where = line, text = "name:line: ...". */
@@ -26,9 +26,9 @@ qc_status qc__byte_fail(qc__text *t, const char *at, const char *format, ...) QC
 /* Fails with CANCELLED when the user asked to stop; call once in some thousand lines. */
 bool qc__text_progress(qc__text *t);
 
-void qc__skip_blanks(qc__text *t); /* spaces and tabs, joined lines; stays on the line              */
-void qc__skip_line(qc__text *t);   /* to the begin of the next line                                */
-void qc__skip_space(qc__text *t);  /* blanks, ends of lines and # comments                          */
+void qc__skip_blanks(qc__text *t); /* spaces and tabs, joined lines; stays on the line */
+void qc__skip_line(qc__text *t);   /* to the begin of the next line */
+void qc__skip_space(qc__text *t);  /* blanks, ends of lines and # comments */
 bool qc__at_line_end(const qc__text *t);
 /* Length of the word at the cursor (up to a blank or the end of the line); does not advance. */
 size_t qc__word_length(const qc__text *t);
@@ -42,9 +42,18 @@ const char *qc__excerpt(const qc__text *t, char buffer[QC__EXCERPT]);
  * independent. False: not a number, cursor unmoved. "nan" and "inf" are numbers here. */
 bool qc__take_double(qc__text *t, double *out);
 bool qc__take_int(qc__text *t, int64_t *out);
+/* w 10^e, exactly rounded; false when that is not known without more effort (w < 10^19). */
+bool qc__decimal(uint64_t w, int64_t e, double *out);
+/* Writes the shortest number which reads back the same (as qc__print_double); returns its length.
+ */
+size_t qc__put_number(char *out, double value);
 
-static inline bool qc__is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-static inline bool qc__is_end(char c) { return c == '\n' || c == '\r'; }
+static inline bool qc__is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+static inline bool qc__is_end(char c) {
+    return c == '\n' || c == '\r';
+}
 
 /* Reads exactly three finite numbers from the rest of the line, or fails naming the vertex. */
 qc_status qc__take_point(qc__text *t, const char *what, int64_t number, double xyz[3]);
@@ -54,12 +63,13 @@ qc_status qc__take_point(qc__text *t, const char *what, int64_t number, double x
 typedef struct qc__soup {
     qc_ctx *ctx;
     double *position, *uv;
-    int32_t *corner_vertex, *corner_uv, *line;      /* corner_uv only when has_corner_uv            */
-    int32_t *face_begin, *face_line, *face_group;   /* first corner; line or element; group          */
-    int64_t n_position, n_uv, n_corner, n_corner_uv, n_line, n_face; /* in array entries             */
-    int64_t c_position, c_uv, c_corner, c_corner_uv, c_line, c_face_begin, c_face_line, c_face_group;
+    int32_t *corner_vertex, *corner_uv, *line;    /* corner_uv only when has_corner_uv */
+    int32_t *face_begin, *face_line, *face_group; /* first corner; line or element; group */
+    int64_t n_position, n_uv, n_corner, n_corner_uv, n_line, n_face; /* in array entries */
+    int64_t c_position, c_uv, c_corner, c_corner_uv, c_line, c_face_begin, c_face_line,
+        c_face_group;
     bool has_groups;
-    bool binary; /* face_line holds element numbers, not lines                                      */
+    bool binary; /* face_line holds element numbers, not lines */
 } qc__soup;
 
 void qc__soup_free(qc__soup *s);
@@ -79,7 +89,7 @@ qc_status qc__read_off(qc__text *t, qc__soup *s);
 qc_status qc__read_ply(qc__text *t, qc__soup *s);
 qc_status qc__read_stl_ascii(qc__text *t, qc__soup *s);
 qc_status qc__read_stl_binary(qc__text *t, qc__soup *s);
-bool qc__is_stl_binary(const char *data, size_t size); /* 84 + 50 n bytes                          */
+bool qc__is_stl_binary(const char *data, size_t size); /* 84 + 50 n bytes */
 bool qc__is_off(const qc__text *t);
 
 #endif

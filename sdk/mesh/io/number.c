@@ -1,16 +1,17 @@
 /* Decimal numbers of mesh files, exactly rounded and fast.
  *
- * w 10^e with an integer w < 2^53 and |e| <= 22 is one exact operation away from the result (Clinger
- * 1990). Longer digit strings (the usual 17) are divided in two parts: q = w_hi / p, then the exact
- * remainder gives a correction c; q + c is the rounded result unless it lies so close to a tie that
- * the error of c matters (Ziv's test). Whatever is left goes to qc__parse_double. */
+ * w 10^e with an integer w < 2^53 and |e| <= 22 is one exact operation away from the result
+ * (Clinger 1990). Longer digit strings (the usual 17) are divided in two parts: q = w_hi / p, then
+ * the exact remainder gives a correction c; q + c is the rounded result unless it lies so close to
+ * a tie that the error of c matters (Ziv's test). Whatever is left goes to qc__parse_double. */
 #include "internal.h"
 
 #include <math.h>
 #include <string.h>
 
-static const double POWER[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                               1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+static const double POWER[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
+                               1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
+                               1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 
 /* w / 10^k for 2^53 <= w < 10^19; false when rounding is in doubt. */
 static bool divide_long(uint64_t w, int k, double *out) {
@@ -24,7 +25,7 @@ static bool divide_long(uint64_t w, int k, double *out) {
     return up == down;
 }
 
-static bool scale(uint64_t w, int64_t e, double *out) {
+bool qc__decimal(uint64_t w, int64_t e, double *out) {
     if (w == 0) {
         *out = 0;
         return true;
@@ -87,7 +88,7 @@ bool qc__take_double(qc__text *t, double *out) {
         p = q;
     }
     double value;
-    if (digits == 0 || significant > 19 || !ends_number(p, end) || !scale(w, e, &value))
+    if (digits == 0 || significant > 19 || !ends_number(p, end) || !qc__decimal(w, e, &value))
         return take_slowly(t, out);
     t->p = p;
     *out = negative ? -value : value;

@@ -8,9 +8,9 @@
 typedef struct group_names {
     const char **name;
     size_t *length;
-    int32_t *slot; /* hash table of numbers, 0 = empty                                              */
+    int32_t *slot; /* hash table of numbers, 0 = empty */
     int64_t n, c_name, c_length;
-    size_t n_slots; /* a power of two, or 0                                                         */
+    size_t n_slots; /* a power of two, or 0 */
 } group_names;
 
 static size_t hash_text(const char *p, size_t n) {
@@ -62,12 +62,13 @@ static void group_free(group_names *g) {
  * checked when the file has been read. */
 static qc_status resolve(qc__text *t, int64_t i, int64_t n, const char *what, int64_t *out) {
     if (i == 0)
-        return qc__text_fail(t, t->line, "%s index 0; OBJ counts from 1, export the file again", what);
+        return qc__text_fail(t, t->line, "%s index 0; OBJ counts from 1, export the file again",
+                             what);
     *out = i > 0 ? i - 1 : n + i;
     if (*out < 0)
-        return qc__text_fail(t, t->line,
-                             "%s index %lld is out of range (%lld read so far); export the file again",
-                             what, (long long)i, (long long)n);
+        return qc__text_fail(
+            t, t->line, "%s index %lld is out of range (%lld read so far); export the file again",
+            what, (long long)i, (long long)n);
     return QC_OK;
 }
 
@@ -86,8 +87,10 @@ static qc_status take_reference(qc__text *t, qc__soup *s, int64_t *vertex, int64
         if (k == 0) status = resolve(t, i, s->n_uv / 2, "texture", uv);
     }
     if (status == QC_OK && t->p < t->end && *t->p == '/')
-        return qc__text_fail(t, t->line, "a corner is not v, v/vt, v//vn or v/vt/vn near '%s'; "
-                                         "export the file again", qc__excerpt(t, excerpt));
+        return qc__text_fail(t, t->line,
+                             "a corner is not v, v/vt, v//vn or v/vt/vn near '%s'; "
+                             "export the file again",
+                             qc__excerpt(t, excerpt));
     return status;
 }
 
@@ -105,8 +108,10 @@ static qc_status read_face(qc__text *t, qc__soup *s, int32_t group) {
         if (!qc__soup_corner(s, vertex, uv)) return QC_ERR_NOMEM;
     }
     if (n < 3)
-        return qc__text_fail(t, first, "a face has %lld corners, at least 3 are needed; remove that "
-                                       "face", (long long)n);
+        return qc__text_fail(t, first,
+                             "a face has %lld corners, at least 3 are needed; remove that "
+                             "face",
+                             (long long)n);
     return QC_OK;
 }
 
@@ -133,8 +138,9 @@ static qc_status read_uv(qc__text *t, qc__soup *s) {
     for (int k = 0; k < 2 && (k == 0 || line_goes_on(t)); k++) {
         qc__skip_blanks(t);
         if (!qc__take_double(t, &uv[k]) || !isfinite(uv[k]))
-            return qc__text_fail(t, t->line, "texture coordinate %lld is not a finite number; remove "
-                                             "the texture coordinates or export the file again",
+            return qc__text_fail(t, t->line,
+                                 "texture coordinate %lld is not a finite number; remove "
+                                 "the texture coordinates or export the file again",
                                  (long long)(s->n_uv / 2 + 1));
     }
     return qc__soup_uv(s, uv[0], uv[1]) ? QC_OK : QC_ERR_NOMEM;
@@ -171,7 +177,7 @@ qc_status qc__read_obj(qc__text *t, qc__soup *s) {
         if (t->p == t->end) break;
         bool comment = *t->p == '#';
         if (!comment && !qc__at_line_end(t)) status = read_statement(t, s, &groups, &group);
-        t->continued = !comment; /* a comment ends with its line                                    */
+        t->continued = !comment; /* a comment ends with its line */
         qc__skip_line(t);
         t->continued = true;
         if (status == QC_OK && i % 16384 == 0 && !qc__text_progress(t)) status = QC_ERR_CANCELLED;

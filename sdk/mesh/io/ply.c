@@ -16,12 +16,20 @@ static double decode(const char *p, int type, bool big) {
     double d;
     uint32_t u32 = (uint32_t)u;
     switch (type) {
-    case QC__PLY_I8: return (double)u - (u >> 7 ? 256.0 : 0);
-    case QC__PLY_I16: return (double)u - (u >> 15 ? 65536.0 : 0);
-    case QC__PLY_I32: return (double)u - (u >> 31 ? 4294967296.0 : 0);
-    case QC__PLY_F32: memcpy(&f, &u32, sizeof f); return (double)f;
-    case QC__PLY_F64: memcpy(&d, &u, sizeof d); return d;
-    default: return (double)u;
+    case QC__PLY_I8:
+        return (double)u - (u >> 7 ? 256.0 : 0);
+    case QC__PLY_I16:
+        return (double)u - (u >> 15 ? 65536.0 : 0);
+    case QC__PLY_I32:
+        return (double)u - (u >> 31 ? 4294967296.0 : 0);
+    case QC__PLY_F32:
+        memcpy(&f, &u32, sizeof f);
+        return (double)f;
+    case QC__PLY_F64:
+        memcpy(&d, &u, sizeof d);
+        return d;
+    default:
+        return (double)u;
     }
 }
 
@@ -29,7 +37,7 @@ typedef struct reader {
     qc__text *t;
     const qc__ply_header *h;
     const qc__ply_element *element;
-    int64_t number; /* of the element                                                               */
+    int64_t number; /* of the element */
 } reader;
 
 static qc_status fail_here(const reader *r, const char *text) {
@@ -64,7 +72,8 @@ static qc_status take_list(const reader *r, const qc__ply_property *p, qc__soup 
     int64_t line = binary ? r->number : t->line;
     qc_status status = take_scalar(r, p->count_type, &n);
     if (status != QC_OK) return status;
-    if (!(n >= 0) || n != floor(n)) return fail_here(r, "negative length of a list; export it again");
+    if (!(n >= 0) || n != floor(n))
+        return fail_here(r, "negative length of a list; export it again");
     int64_t least = binary ? qc__ply_size(p->type) : 1;
     if (n > (double)(t->end - t->p) / (double)least) return fail_here(r, TRUNCATED);
     if (corners && n < 3) return fail_here(r, "fewer than 3 corners; remove that face");
@@ -91,8 +100,10 @@ static qc_status take_element(const reader *r, qc__soup *s) {
     qc_status status = QC_OK;
     for (int64_t k = 0; k < r->element->n_properties && status == QC_OK; k++) {
         const qc__ply_property *p = &r->h->property[r->element->property + k];
-        if (p->count_type != QC__PLY_NONE) status = take_list(r, p, s);
-        else status = take_scalar(r, p->type, p->role < 3 ? &xyz[p->role] : &ignored);
+        if (p->count_type != QC__PLY_NONE)
+            status = take_list(r, p, s);
+        else
+            status = take_scalar(r, p->type, p->role < 3 ? &xyz[p->role] : &ignored);
     }
     if (status != QC_OK || !vertex) return status;
     if (!isfinite(xyz[0]) || !isfinite(xyz[1]) || !isfinite(xyz[2]))
@@ -105,7 +116,8 @@ static qc_status take_elements(reader *r, qc__soup *s) {
     bool binary = r->h->format != QC__PLY_ASCII;
     bool wanted = strcmp(e->name, "vertex") == 0 || strcmp(e->name, "face") == 0;
     if (e->n_properties == 0) return QC_OK;
-    if (binary && !e->has_list && !wanted) { /* check_header has compared with the size of the file */
+    if (binary && !e->has_list &&
+        !wanted) { /* check_header has compared with the size of the file */
         if (e->count > (r->t->end - r->t->p) / e->least_bytes) return fail_here(r, TRUNCATED);
         r->t->p += e->count * e->least_bytes;
         return QC_OK;

@@ -27,12 +27,16 @@ static int take_type(qc__text *t) {
 static qc_status read_format(qc__text *t, qc__ply_header *h) {
     char excerpt[QC__EXCERPT];
     qc__skip_blanks(t);
-    if (qc__take_word(t, "ascii")) h->format = QC__PLY_ASCII;
-    else if (qc__take_word(t, "binary_little_endian")) h->format = QC__PLY_LITTLE;
-    else if (qc__take_word(t, "binary_big_endian")) h->format = QC__PLY_BIG;
+    if (qc__take_word(t, "ascii"))
+        h->format = QC__PLY_ASCII;
+    else if (qc__take_word(t, "binary_little_endian"))
+        h->format = QC__PLY_LITTLE;
+    else if (qc__take_word(t, "binary_big_endian"))
+        h->format = QC__PLY_BIG;
     else
-        return qc__text_fail(t, t->line, "unknown PLY format '%s'; save it as ascii or "
-                                         "binary_little_endian",
+        return qc__text_fail(t, t->line,
+                             "unknown PLY format '%s'; save it as ascii or "
+                             "binary_little_endian",
                              qc__excerpt(t, excerpt));
     return QC_OK;
 }
@@ -50,8 +54,9 @@ static qc_status read_element(qc__text *t, qc__ply_header *h) {
     t->p += n;
     qc__skip_blanks(t);
     if (n == 0 || !qc__take_int(t, &e->count) || e->count < 0)
-        return qc__text_fail(t, t->line, "an element needs a name and a count, found '%s'; export the "
-                                         "file again",
+        return qc__text_fail(t, t->line,
+                             "an element needs a name and a count, found '%s'; export the "
+                             "file again",
                              qc__excerpt(t, excerpt));
     h->n_elements++;
     return QC_OK;
@@ -99,7 +104,8 @@ static void skip_header_end(qc__text *t) {
     const char *first = t->begin + 3;
     bool lone_cr = *first == '\r' && (first + 1 == t->end || first[1] != '\n');
     while (t->p < t->end && !qc__is_end(*t->p)) t->p++;
-    if (lone_cr) t->p += t->p < t->end;
+    if (lone_cr)
+        t->p += t->p < t->end;
     else {
         t->p += t->p < t->end && *t->p == '\r';
         t->p += t->p < t->end && *t->p == '\n';
@@ -113,17 +119,18 @@ static qc_status check_header(qc__text *t, const qc__ply_header *h) {
         /* an element takes its bytes, or at least a digit and a blank for every property */
         int64_t least = h->format == QC__PLY_ASCII ? 2 * e->n_properties : e->least_bytes;
         if (least > 0 && e->count > (t->end - t->p + 1) / least)
-            return qc__text_fail(t, e->line, "the header promises %lld elements '%s' but only %lld "
-                                             "bytes follow; the file is cut off, export it again",
+            return qc__text_fail(t, e->line,
+                                 "the header promises %lld elements '%s' but only %lld "
+                                 "bytes follow; the file is cut off, export it again",
                                  (long long)e->count, e->name, (long long)(t->end - t->p));
         unsigned roles = 0;
         for (int64_t k = 0; k < e->n_properties; k++)
             roles |= 1u << h->property[e->property + k].role;
         if ((strcmp(e->name, "vertex") == 0 && (roles & 7u) != 7u) ||
             (strcmp(e->name, "face") == 0 && !(roles & (1u << QC__PLY_CORNERS))))
-            return qc__text_fail(t, e->line, "element '%s' lacks %s; export the file again", e->name,
-                                 e->name[0] == 'v' ? "a property x, y or z"
-                                                   : "the list vertex_indices");
+            return qc__text_fail(
+                t, e->line, "element '%s' lacks %s; export the file again", e->name,
+                e->name[0] == 'v' ? "a property x, y or z" : "the list vertex_indices");
     }
     return QC_OK;
 }
@@ -135,12 +142,16 @@ qc_status qc__ply_read_header(qc__text *t, qc__ply_header *h) {
     for (qc__skip_line(t); status == QC_OK; qc__skip_line(t)) {
         qc__skip_blanks(t);
         if (t->p == t->end)
-            return qc__text_fail(t, t->line, "the PLY header has no end_header; the file is cut off, "
-                                             "export it again");
+            return qc__text_fail(t, t->line,
+                                 "the PLY header has no end_header; the file is cut off, "
+                                 "export it again");
         if (qc__take_word(t, "end_header")) break;
-        if (qc__take_word(t, "format")) status = read_format(t, h);
-        else if (qc__take_word(t, "element")) status = read_element(t, h);
-        else if (qc__take_word(t, "property")) status = read_property(t, h);
+        if (qc__take_word(t, "format"))
+            status = read_format(t, h);
+        else if (qc__take_word(t, "element"))
+            status = read_element(t, h);
+        else if (qc__take_word(t, "property"))
+            status = read_property(t, h);
         else if (!qc__at_line_end(t) && !qc__take_word(t, "comment") &&
                  !qc__take_word(t, "obj_info"))
             status = qc__text_fail(t, t->line, "unknown PLY statement '%s'; export the file again",

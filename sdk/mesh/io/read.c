@@ -10,7 +10,8 @@ static bool has_extension(const char *name, const char *extension) {
     if (n < m) return false;
     for (size_t i = 0; i < m; i++) {
         char c = name[n - m + i];
-        if (c != extension[i] && !(c >= 'A' && c <= 'Z' && c - 'A' + 'a' == extension[i])) return false;
+        if (c != extension[i] && !(c >= 'A' && c <= 'Z' && c - 'A' + 'a' == extension[i]))
+            return false;
     }
     return true;
 }
@@ -28,8 +29,8 @@ static bool is_stl_ascii(const qc__text *t) {
 }
 
 static bool is_obj(const qc__text *t) {
-    static const char *const statements[] = {"v",  "vt", "vn", "vp",     "f",      "l", "p",
-                                             "g",  "o",  "s",  "mtllib", "usemtl", "mg"};
+    static const char *const statements[] = {"v", "vt", "vn", "vp",     "f",      "l", "p",
+                                             "g", "o",  "s",  "mtllib", "usemtl", "mg"};
     qc__text copy = *t;
     qc__skip_space(&copy);
     for (size_t i = 0; i < sizeof statements / sizeof *statements; i++)
@@ -61,15 +62,16 @@ qc_status qc_polygon_mesh_parse(qc_ctx *ctx, const void *data, size_t size, cons
                                 qc_polygon_mesh **out) {
     const char *p = size ? data : "";
     qc__text t = {ctx, name ? name : "mesh", p, p, p + size, 1, false};
-    if (size >= 3 && memcmp(p, "\xef\xbb\xbf", 3) == 0) t.p += 3; /* byte order mark                 */
+    if (size >= 3 && memcmp(p, "\xef\xbb\xbf", 3) == 0) t.p += 3; /* byte order mark */
     qc_status status = check_content(&t);
     if (status != QC_OK) return status;
     reader *read = recognise(&t);
     if (!read)
-        return qc__fail(ctx, QC_ERR_INPUT, 1,
-                        "%s: the content is not recognised as OBJ, OFF, PLY or STL%s; convert it to "
-                        "one of these",
-                        t.name, has_extension(t.name, ".ply") ? " (a PLY file begins with 'ply')" : "");
+        return qc__fail(
+            ctx, QC_ERR_INPUT, 1,
+            "%s: the content is not recognised as OBJ, OFF, PLY or STL%s; convert it to "
+            "one of these",
+            t.name, has_extension(t.name, ".ply") ? " (a PLY file begins with 'ply')" : "");
     qc__soup soup = {.ctx = ctx};
     status = read(&t, &soup);
     if (status == QC_OK) status = qc__soup_finish(&soup, &t, out);
@@ -82,8 +84,8 @@ qc_status qc_polygon_mesh_read(qc_ctx *ctx, const char *path, qc_polygon_mesh **
     size_t size;
     qc_status status = qc__read_file(ctx, path, &data, &size);
     if (status != QC_OK) return status;
-    status = qc_polygon_mesh_parse(ctx, data, size, strcmp(path, "-") == 0 ? "standard input" : path,
-                                   out);
+    status = qc_polygon_mesh_parse(ctx, data, size,
+                                   strcmp(path, "-") == 0 ? "standard input" : path, out);
     qc__free(data);
     return status;
 }

@@ -10,9 +10,9 @@ void qc__soup_free(qc__soup *s) {
 }
 
 /* Room for `more` entries of a growing array; the test for room is inline, growing is not. */
-#define ROOM(s, array, n, capacity, more)                                                           \
-    ((n) + (more) <= (capacity) || qc__reserve((s)->ctx, (void **)&(array), &(capacity),            \
-                                               (n) + (more), sizeof *(array)))
+#define ROOM(s, array, n, capacity, more)                                                          \
+    ((n) + (more) <= (capacity) ||                                                                 \
+     qc__reserve((s)->ctx, (void **)&(array), &(capacity), (n) + (more), sizeof *(array)))
 
 bool qc__soup_vertex(qc__soup *s, const double xyz[3]) {
     if (!ROOM(s, s->position, s->n_position, s->c_position, 3)) return false;
@@ -86,10 +86,11 @@ static qc_status check_faces(qc__soup *s, qc__text *t) {
             if (v >= 0 && v < nv && u < nt) continue;
             bool vertex = v < 0 || v >= nv;
             /* OBJ counts from 1 */
-            snprintf(text, sizeof text,
-                     "%s index %lld is out of range (%lld %s); the file is damaged, export it again",
-                     vertex ? "vertex" : "texture", (long long)(vertex ? v : u) + t->continued,
-                     (long long)(vertex ? nv : nt), vertex ? "vertices" : "texture coordinates");
+            snprintf(
+                text, sizeof text,
+                "%s index %lld is out of range (%lld %s); the file is damaged, export it again",
+                vertex ? "vertex" : "texture", (long long)(vertex ? v : u) + t->continued,
+                (long long)(vertex ? nv : nt), vertex ? "vertices" : "texture coordinates");
             return fail_at_face(s, t, f, text);
         }
     }
@@ -108,8 +109,8 @@ static qc_status check_counts(qc__soup *s, qc__text *t) {
                         "%s: the file has no faces (%lld vertices); a surface mesh is needed, "
                         "not points or curves",
                         t->name, (long long)(s->n_position / 3));
-    if (s->n_position / 3 >= INT32_MAX || s->n_corner >= INT32_MAX / 2 || s->n_uv / 2 >= INT32_MAX ||
-        s->n_line / 2 >= INT32_MAX)
+    if (s->n_position / 3 >= INT32_MAX || s->n_corner >= INT32_MAX / 2 ||
+        s->n_uv / 2 >= INT32_MAX || s->n_line / 2 >= INT32_MAX)
         return qc__fail(s->ctx, QC_ERR_INPUT, s->n_face,
                         "%s: the mesh has more than 2^30 corners; split or simplify it", t->name);
     return QC_OK;

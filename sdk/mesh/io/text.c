@@ -48,7 +48,9 @@ void qc__skip_blanks(qc__text *t) {
     }
 }
 
-bool qc__at_line_end(const qc__text *t) { return t->p == t->end || qc__is_end(*t->p); }
+bool qc__at_line_end(const qc__text *t) {
+    return t->p == t->end || qc__is_end(*t->p);
+}
 
 void qc__skip_line(qc__text *t) {
     for (;;) {
@@ -76,7 +78,9 @@ size_t qc__word_length(const qc__text *t) {
     return (size_t)(p - t->p);
 }
 
-static char lower(char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; }
+static char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
 
 bool qc__take_word(qc__text *t, const char *word) {
     size_t n = qc__word_length(t);

@@ -48,8 +48,7 @@ static void put_int(output *o, int32_t i) {
 
 static void put_double(output *o, double value) {
     need(o, 40);
-    int n = qc__print_double(o->buffer + o->n, 40, value);
-    if (n > 0) o->n += (size_t)n;
+    o->n += qc__put_number(o->buffer + o->n, value);
 }
 
 static void put_comment(output *o, const char *comment) {
@@ -97,8 +96,10 @@ static bool put_mesh(qc_ctx *ctx, output *o, const qc_polygon_mesh *m) {
     int64_t n = nv + nu + nf + (m->line ? m->n_lines : 0);
     for (int64_t i = 0; i < n && !o->failed; i++) {
         int64_t j = i - nv - nu;
-        if (i < nv) put_point(o, "v", m->position + 3 * i, 3);
-        else if (j < 0) put_point(o, "vt", m->uv + 2 * (i - nv), 2);
+        if (i < nv)
+            put_point(o, "v", m->position + 3 * i, 3);
+        else if (j < 0)
+            put_point(o, "vt", m->uv + 2 * (i - nv), 2);
         else if (j < nf) {
             put_group(o, m, (int32_t)j);
             put_face(o, m, (int32_t)j);
@@ -128,7 +129,8 @@ static qc_status check_finite(qc_ctx *ctx, const double *x, int64_t n, int dimen
 qc_status qc_polygon_mesh_write(qc_ctx *ctx, const qc_polygon_mesh *mesh, const char *path,
                                 const char *comment) {
     qc__writer writer;
-    qc_status status = check_finite(ctx, mesh->position, 3 * (int64_t)mesh->n_vertices, 3, "vertex");
+    qc_status status =
+        check_finite(ctx, mesh->position, 3 * (int64_t)mesh->n_vertices, 3, "vertex");
     if (status == QC_OK && mesh->uv)
         status = check_finite(ctx, mesh->uv, 2 * (int64_t)mesh->n_uvs, 2, "texture coordinate");
     if (status != QC_OK) return status;
@@ -140,7 +142,8 @@ qc_status qc_polygon_mesh_write(qc_ctx *ctx, const qc_polygon_mesh *mesh, const 
         o->n = 0;
         o->failed = false;
         put_comment(o, comment);
-        if (put_mesh(ctx, o, mesh)) status = qc__writer_commit(ctx, &writer); /* sees write errors  */
+        if (put_mesh(ctx, o, mesh))
+            status = qc__writer_commit(ctx, &writer); /* sees write errors */
         else {
             qc__writer_abort(&writer);
             status = QC_ERR_CANCELLED;

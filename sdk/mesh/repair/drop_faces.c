@@ -53,8 +53,10 @@ qc_status qc__repair_duplicate(qc__repair *r) {
             if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2]) break;
         }
         keep[f] = slot[i] < 0;
-        if (keep[f]) slot[i] = f;
-        else qc__repair_note(r, QC_REPAIR_DUPLICATE, r->source_face[f]);
+        if (keep[f])
+            slot[i] = f;
+        else
+            qc__repair_note(r, QC_REPAIR_DUPLICATE, r->source_face[f]);
     }
     qc__repair_keep(r, keep);
     qc__free(keep);

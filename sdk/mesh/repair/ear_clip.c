@@ -6,7 +6,8 @@
 
 #include "sdk/mesh/repair/internal.h"
 
-/* Drops the axis in which the Newell normal is largest, so that the polygon is counter-clockwise. */
+/* Drops the axis in which the Newell normal is largest, so that the polygon is counter-clockwise.
+ */
 static void project(int32_t n, const double *p, double *flat) {
     double normal[3] = {0, 0, 0};
     for (int32_t i = 0; i < n; i++) {
@@ -112,7 +113,7 @@ static void clip_ears(qc__polygon *p) {
         *out++ = c;
         if (m > 3) qc__edge_set_add(p->taken, p->vertex[a], p->vertex[c]);
         for (int32_t j = i; j + 1 < m; j++) ring[j] = ring[j + 1];
-        begin = i + 1; /* a later corner: ears round the polygon, no fan                             */
+        begin = i + 1; /* a later corner: ears round the polygon, no fan */
     }
 }
 

@@ -5,7 +5,7 @@
 
 #include "sdk/mesh/repair/internal.h"
 
-enum { MOST_FACES = 32 }; /* an edge with more faces than this is cut open altogether               */
+enum { MOST_FACES = 32 }; /* an edge with more faces than this is cut open altogether */
 
 static void face_normal(const qc__repair *r, int32_t face, double n[3]) {
     const int32_t *t = r->triangle + 3 * (size_t)face;
@@ -68,7 +68,8 @@ static void face_angles(const qc__repair *r, const int32_t *side, int32_t n, dou
         axis[k] = length > 0 ? axis[k] / length : 0;
         u[k] = first[k] - a[k] - (length > 0 ? along / length : 0) * axis[k];
     }
-    for (int k = 0; k < 3; k++) v[k] = axis[(k + 1) % 3] * u[(k + 2) % 3] - axis[(k + 2) % 3] * u[(k + 1) % 3];
+    for (int k = 0; k < 3; k++)
+        v[k] = axis[(k + 1) % 3] * u[(k + 2) % 3] - axis[(k + 2) % 3] * u[(k + 1) % 3];
     for (int32_t i = 0; i < n; i++) {
         const double *p = qc__repair_point(r, r->triangle[side[i]]);
         double x = 0, y = 0;
@@ -80,8 +81,9 @@ static void face_angles(const qc__repair *r, const int32_t *side, int32_t n, dou
     }
 }
 
-/* Solids which touch in the edge: around it the faces run to and fro in turn, and those with material
- * between them belong together. The material of a face along the axis lies at smaller angles. */
+/* Solids which touch in the edge: around it the faces run to and fro in turn, and those with
+ * material between them belong together. The material of a face along the axis lies at smaller
+ * angles. */
 static bool pair_solids(qc__repair *r, const int32_t *side, int32_t n) {
     double angle[MOST_FACES];
     int32_t order[MOST_FACES];

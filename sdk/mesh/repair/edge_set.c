@@ -11,7 +11,8 @@ qc_status qc__edge_set_create(qc_ctx *ctx, int64_t most, qc__edge_set *out) {
     return out->slot ? QC_OK : QC_ERR_NOMEM;
 }
 
-/* The place of the edge, or the free place where it belongs. Keys are never 0: vertices count from 1. */
+/* The place of the edge, or the free place where it belongs. Keys are never 0: vertices count
+ * from 1. */
 static size_t find(const qc__edge_set *s, uint64_t key) {
     uint64_t h = key * UINT64_C(0x9e3779b97f4a7c15);
     size_t i = (size_t)(h ^ h >> 32) & s->mask;

@@ -30,7 +30,8 @@ double qc__edit_quality(const qc__edit *e, int32_t a, int32_t b, int32_t c, doub
     double n[3], area = 0, longest = 0;
     for (int k = 0; k < 3; k++) {
         int i = (k + 1) % 3, j = (k + 2) % 3;
-        n[k] = (p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) - (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]);
+        n[k] =
+            (p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) - (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]);
         area += n[k] * n[k];
         double d = 0;
         for (int m = 0; m < 3; m++) d += (p[i][m] - p[j][m]) * (p[i][m] - p[j][m]);
@@ -57,11 +58,13 @@ static void walk_next(const qc__edit *e, walk *w) {
     if (!w->clockwise) {
         int32_t g = twin[qc_next(w->now)];
         w->now = g < 0 ? -1 : qc_next(g);
-        if (w->now == w->first) w->now = -1;
+        if (w->now == w->first)
+            w->now = -1;
         else if (g < 0) {
             w->open = w->clockwise = true;
             w->now = w->first;
-        } else return;
+        } else
+            return;
         if (w->now < 0) return;
     }
     int32_t g = twin[qc_prev(w->now)];
@@ -95,7 +98,7 @@ static int32_t count_marked(qc__edit *e, int32_t v) {
         for (int side = 0; side < 2; side++) {
             int32_t x = e->r->triangle[side ? qc_prev(w.now) : qc_next(w.now)];
             if (e->mark[x] != e->stamp) continue;
-            e->mark[x] = 0; /* once                                                                */
+            e->mark[x] = 0; /* once */
             n++;
         }
     return n;
@@ -108,8 +111,8 @@ static void link_twins(qc__repair *r, int32_t h, int32_t g) {
 
 /* --- collapse --------------------------------------------------------------------------------- */
 
-/* The apex of halfedge h loses a face; it must keep a proper fan, and the two other edges of the face
- * must not both be boundary. */
+/* The apex of halfedge h loses a face; it must keep a proper fan, and the two other edges of the
+ * face must not both be boundary. */
 static bool apex_survives(const qc__edit *e, int32_t h) {
     if (e->r->twin[qc_next(h)] < 0 && e->r->twin[qc_prev(h)] < 0) return false;
     int32_t apex = e->r->triangle[h];
@@ -137,7 +140,7 @@ static bool ring_survives(const qc__edit *e, int32_t gone, int32_t stays, double
 static void close_face(qc__edit *e, int32_t h, int32_t stays) {
     qc__repair *r = e->r;
     int32_t apex = r->triangle[h], a = r->twin[qc_next(h)], b = r->twin[qc_prev(h)];
-    link_twins(r, a, b); /* one of them may be the boundary                                         */
+    link_twins(r, a, b); /* one of them may be the boundary */
     /* a runs from the apex to the end of h, b from the start of h to the apex */
     e->corner[apex] = a >= 0 ? qc_next(a) : qc_prev(b);
     e->corner[stays] = a >= 0 ? qc_prev(a) : qc_next(b);
@@ -151,7 +154,7 @@ bool qc__edit_collapse(qc__edit *e, int32_t h, double least) {
     if (bu && bv && g >= 0) return false;
     if (!apex_survives(e, h) || (g >= 0 && !apex_survives(e, g))) return false;
     mark_ring(e, u);
-    if (count_marked(e, v) != (g >= 0 ? 2 : 1)) return false; /* link condition                      */
+    if (count_marked(e, v) != (g >= 0 ? 2 : 1)) return false; /* link condition */
     int32_t stays = bu != bv ? (bu ? u : v) : u < v ? u : v, gone = stays == u ? v : u;
     if (!ring_survives(e, gone, stays, least)) {
         int32_t swap = stays;
@@ -177,7 +180,7 @@ bool qc__edit_flip(qc__edit *e, int32_t h, double least) {
     int32_t a = t[qc_next(h)], b = t[qc_prev(h)], c = t[h], d = t[g];
     if (c == d) return false;
     mark_ring(e, c);
-    if (e->mark[d] == e->stamp) return false; /* c and d are joined by an edge already               */
+    if (e->mark[d] == e->stamp) return false; /* c and d are joined by an edge already */
     double old[3], n1[3], n2[3];
     double worst = qc__edit_quality(e, c, a, b, NULL), other = qc__edit_quality(e, d, b, a, old);
     double q1 = qc__edit_quality(e, c, a, d, n1), q2 = qc__edit_quality(e, d, b, c, n2);
@@ -214,9 +217,11 @@ bool qc__edit_remove_boundary(qc__edit *e, int32_t face) {
         if (r->twin[h] < 0) open = h, n++;
     if (n == 0 || n == 3 || (n == 1 && on_boundary(e, r->triangle[open]))) return false;
     for (int32_t h = 3 * face; h < 3 * face + 3; h++) {
-        int32_t v = r->triangle[h], next = -1; /* another corner of v                              */
-        if (r->twin[qc_next(h)] >= 0) next = qc_next(r->twin[qc_next(h)]);
-        else if (r->twin[qc_prev(h)] >= 0) next = qc_prev(r->twin[qc_prev(h)]);
+        int32_t v = r->triangle[h], next = -1; /* another corner of v */
+        if (r->twin[qc_next(h)] >= 0)
+            next = qc_next(r->twin[qc_next(h)]);
+        else if (r->twin[qc_prev(h)] >= 0)
+            next = qc_prev(r->twin[qc_prev(h)]);
         e->corner[v] = next;
         if (next < 0) r->merged[r->source_vertex[v]] = 1;
     }

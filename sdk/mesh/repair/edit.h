@@ -6,8 +6,8 @@
 
 typedef struct qc__edit {
     qc__repair *r;
-    int32_t *corner; /* per vertex: a corner of a live face, -1 = none                              */
-    int32_t *mark, stamp; /* per vertex: scratch                                                    */
+    int32_t *corner;      /* per vertex: a corner of a live face, -1 = none */
+    int32_t *mark, stamp; /* per vertex: scratch */
 } qc__edit;
 
 qc_status qc__edit_begin(qc__repair *r, qc__edit *e);

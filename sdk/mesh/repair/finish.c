@@ -4,7 +4,7 @@
 
 #include "sdk/mesh/repair/internal.h"
 
-enum { LEAST_FACES = 4 }; /* of a component: the tetrahedron is the smallest closed surface           */
+enum { LEAST_FACES = 4 }; /* of a component: the tetrahedron is the smallest closed surface */
 
 /* Vertices of the input which neither live on nor were merged with another one. */
 static qc_status note_unreferenced(qc__repair *r) {

@@ -12,12 +12,12 @@ typedef struct qc__repair {
     const qc_polygon_mesh *soup;
     qc_repair_report *report;
     int32_t n_vertices, n_faces;
-    int32_t *triangle;      /* 3 n_faces; the first entry of a removed face is -1                     */
-    int32_t *source_face;   /* n_faces                                                              */
-    int32_t *source_vertex; /* n_vertices                                                           */
-    int32_t *twin;          /* 3 n_faces, -1 = boundary                                             */
-    uint8_t *merged;        /* per input vertex: it lives on as another one                          */
-    uint8_t *cut;           /* n_vertices: at the end of an edge which was cut open                  */
+    int32_t *triangle;      /* 3 n_faces; the first entry of a removed face is -1 */
+    int32_t *source_face;   /* n_faces */
+    int32_t *source_vertex; /* n_vertices */
+    int32_t *twin;          /* 3 n_faces, -1 = boundary */
+    uint8_t *merged;        /* per input vertex: it lives on as another one */
+    uint8_t *cut;           /* n_vertices: at the end of an edge which was cut open */
 } qc__repair;
 
 static inline const double *qc__repair_point(const qc__repair *r, int32_t v) {
@@ -32,8 +32,9 @@ void qc__repair_keep(qc__repair *r, const uint8_t *keep);
 #define QC__FACE_NAME 64
 const char *qc__repair_face_name(const qc__repair *r, int32_t face, char buffer[QC__FACE_NAME]);
 
-/* Halfedges grouped by their end points: group i is order[start[i]] .. order[start[i+1]-1], ascending
- * in each group; vertex[h] is the vertex at corner h. Both arrays are freed by the caller. */
+/* Halfedges grouped by their end points: group i is order[start[i]] .. order[start[i+1]-1],
+ * ascending in each group; vertex[h] is the vertex at corner h. Both arrays are freed by the
+ * caller. */
 typedef struct qc__edge_groups {
     int32_t n;
     int32_t *order, *start;
@@ -44,23 +45,23 @@ void qc__edge_groups_free(qc__edge_groups *g);
 
 /* Undirected edges; room for `most` different ones. slot is freed by the caller. */
 typedef struct qc__edge_set {
-    uint64_t *slot; /* 0 = free                                                                     */
+    uint64_t *slot; /* 0 = free */
     size_t mask;
 } qc__edge_set;
 qc_status qc__edge_set_create(qc_ctx *ctx, int64_t most, qc__edge_set *out);
 bool qc__edge_set_has(const qc__edge_set *s, int32_t a, int32_t b);
 void qc__edge_set_add(qc__edge_set *s, int32_t a, int32_t b);
 
-/* Triangles of a polygon, its corners being vertices vertex[0..n) at point[0..3n). Diagonals avoid the
- * edges in `taken` where they can (two polygons may share two consecutive edges; the same diagonal in
- * both would close a pocket) and are added to it. */
+/* Triangles of a polygon, its corners being vertices vertex[0..n) at point[0..3n). Diagonals avoid
+ * the edges in `taken` where they can (two polygons may share two consecutive edges; the same
+ * diagonal in both would close a pocket) and are added to it. */
 typedef struct qc__polygon {
     int32_t n;
-    int32_t *vertex;    /* n                                                                        */
-    double *point;      /* 3 n                                                                      */
-    int32_t *triangles; /* result: 3 (n - 2) corner numbers                                          */
-    int32_t *ring;      /* scratch, n                                                               */
-    double *flat;       /* scratch, 2 n                                                             */
+    int32_t *vertex;    /* n */
+    double *point;      /* 3 n */
+    int32_t *triangles; /* result: 3 (n - 2) corner numbers */
+    int32_t *ring;      /* scratch, n */
+    double *flat;       /* scratch, 2 n */
     qc__edge_set *taken;
 } qc__polygon;
 void qc__triangulate_polygon(qc__polygon *p);

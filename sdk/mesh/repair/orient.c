@@ -5,7 +5,7 @@
 typedef struct component {
     int32_t n, turned;
     bool closed;
-    double volume; /* six times the signed volume, with the faces as turned                         */
+    double volume; /* six times the signed volume, with the faces as turned */
 } component;
 
 static bool same_direction(const qc__repair *r, int32_t h, int32_t g) {
@@ -20,12 +20,13 @@ static double face_volume(const qc__repair *r, int32_t face, const double origin
             e[k][i] = qc__repair_point(r, r->triangle[3 * face + k])[i] - origin[i];
     double volume = 0;
     for (int i = 0; i < 3; i++)
-        volume += e[0][i] * (e[1][(i + 1) % 3] * e[2][(i + 2) % 3] - e[1][(i + 2) % 3] * e[2][(i + 1) % 3]);
+        volume += e[0][i] *
+                  (e[1][(i + 1) % 3] * e[2][(i + 2) % 3] - e[1][(i + 2) % 3] * e[2][(i + 1) % 3]);
     return volume;
 }
 
-/* Visits the component of `seed`; turn[f] is -1 before the visit, then 1 for faces which disagree with
- * the seed. queue gets the faces. */
+/* Visits the component of `seed`; turn[f] is -1 before the visit, then 1 for faces which disagree
+ * with the seed. queue gets the faces. */
 static qc_status visit(qc__repair *r, int32_t seed, int8_t *turn, int32_t *queue, component *out) {
     const double *origin = qc__repair_point(r, r->triangle[3 * seed]);
     component c = {1, 0, true, 0};
@@ -45,10 +46,11 @@ static qc_status visit(qc__repair *r, int32_t seed, int8_t *turn, int32_t *queue
                 turn[g / 3] = wanted;
                 queue[c.n++] = g / 3;
             } else if (turn[g / 3] != wanted)
-                return qc__fail(r->ctx, QC_ERR_INPUT, r->source_face[g / 3],
-                                "the surface is one-sided (like a Moebius strip) at %s; cut it open "
-                                "along a loop through that face",
-                                qc__repair_face_name(r, g / 3, name));
+                return qc__fail(
+                    r->ctx, QC_ERR_INPUT, r->source_face[g / 3],
+                    "the surface is one-sided (like a Moebius strip) at %s; cut it open "
+                    "along a loop through that face",
+                    qc__repair_face_name(r, g / 3, name));
         }
     }
     *out = c;

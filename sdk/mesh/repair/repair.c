@@ -5,16 +5,11 @@
 #include "sdk/mesh/repair/internal.h"
 
 static const char *const NAMES[QC_REPAIR_KINDS] = {
-    "polygons triangulated",
-    "vertices with equal coordinates merged",
-    "degenerate faces dropped",
-    "duplicate faces dropped",
-    "non-manifold edges cut open",
-    "faces turned round",
-    "non-manifold vertices split",
-    "zero-area faces removed",
-    "vertices without faces dropped",
-    "components with fewer than 4 faces dropped"};
+    "polygons triangulated",          "vertices with equal coordinates merged",
+    "degenerate faces dropped",       "duplicate faces dropped",
+    "non-manifold edges cut open",    "faces turned round",
+    "non-manifold vertices split",    "zero-area faces removed",
+    "vertices without faces dropped", "components with fewer than 4 faces dropped"};
 
 const char *qc_repair_kind_name(int32_t kind) {
     return kind >= 0 && kind < QC_REPAIR_KINDS ? NAMES[kind] : "unknown repair";
@@ -40,7 +35,8 @@ const char *qc__repair_face_name(const qc__repair *r, int32_t face, char buffer[
     if (r->soup->face_line)
         snprintf(buffer, QC__FACE_NAME, "face %d (line or element %d of the file)", (int)f,
                  (int)r->soup->face_line[f]);
-    else snprintf(buffer, QC__FACE_NAME, "face %d", (int)f);
+    else
+        snprintf(buffer, QC__FACE_NAME, "face %d", (int)f);
     return buffer;
 }
 
@@ -54,7 +50,8 @@ static qc_status check_soup(qc_ctx *ctx, const qc_polygon_mesh *s) {
                             (long long)(i / 3));
     for (int32_t f = 0; f < s->n_faces; f++) {
         if (s->face_offset[f + 1] < s->face_offset[f] || s->face_offset[f + 1] > s->n_corners)
-            return qc__fail(ctx, QC_ERR_ARGUMENT, f, "face_offset is not increasing at face %d", (int)f);
+            return qc__fail(ctx, QC_ERR_ARGUMENT, f, "face_offset is not increasing at face %d",
+                            (int)f);
         for (int32_t c = s->face_offset[f]; c < s->face_offset[f + 1]; c++)
             if (s->face_vertex[c] < 0 || s->face_vertex[c] >= s->n_vertices)
                 return qc__fail(ctx, QC_ERR_ARGUMENT, f,
@@ -76,12 +73,16 @@ static void log_report(qc_ctx *ctx, const qc_repair_report *report) {
                                   (int)report->first[k][i]);
         qc__log(ctx, QC_LOG_WARNING, "repair: %d %s (%s %s%s)", (int)report->count[k], NAMES[k],
                 k == QC_REPAIR_WELDED || k == QC_REPAIR_NON_MANIFOLD_VERTEX ||
-                        k == QC_REPAIR_UNREFERENCED ? "vertex" : "face",
+                        k == QC_REPAIR_UNREFERENCED
+                    ? "vertex"
+                    : "face",
                 first, report->count[k] > 4 ? ", ..." : "");
     }
 }
 
-static void destroy_report(qc_object *object) { qc__free(object); }
+static void destroy_report(qc_object *object) {
+    qc__free(object);
+}
 
 static qc_repair_report *create_report(qc_ctx *ctx) {
     qc_repair_report *report = QC__ZERO(ctx, qc_repair_report, 1);
@@ -103,9 +104,9 @@ static qc_status start(qc__repair *r) {
 
 static qc_status run(qc__repair *r, qc_mesh **mesh) {
     typedef qc_status step(qc__repair *);
-    static step *const steps[] = {qc__repair_triangulate, qc__repair_weld,   qc__repair_degenerate,
-                                  qc__repair_duplicate,   qc__repair_pair,   qc__repair_orient,
-                                  qc__repair_split,       qc__repair_zero_area};
+    static step *const steps[] = {
+        qc__repair_triangulate, qc__repair_weld,   qc__repair_degenerate, qc__repair_duplicate,
+        qc__repair_pair,        qc__repair_orient, qc__repair_split,      qc__repair_zero_area};
     const size_t n = sizeof steps / sizeof *steps;
     for (size_t i = 0; i < n; i++) {
         qc_status status = steps[i](r);
@@ -123,9 +124,12 @@ qc_status qc_mesh_repair(qc_ctx *ctx, const qc_polygon_mesh *soup, qc_mesh **mes
     if (status == QC_OK) status = run(&r, mesh);
     if (status == QC_OK) {
         log_report(ctx, r.report);
-        if (report) *report = r.report;
-        else qc_object_release(&r.report->object);
-    } else qc__free(r.report);
+        if (report)
+            *report = r.report;
+        else
+            qc_object_release(&r.report->object);
+    } else
+        qc__free(r.report);
     qc__free(r.triangle);
     qc__free(r.source_face);
     qc__free(r.source_vertex);

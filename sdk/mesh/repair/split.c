@@ -62,7 +62,7 @@ static qc_status separate_all(qc__repair *r, int32_t *parent, int32_t *fan) {
 
 /* The first fan of a vertex keeps its number, the others become new vertices. */
 static qc_status copy_vertices(qc__repair *r, int32_t n_fans, const int32_t *fan) {
-    int32_t *vertex = QC__NEW(r->ctx, int32_t, n_fans); /* of each fan                              */
+    int32_t *vertex = QC__NEW(r->ctx, int32_t, n_fans); /* of each fan */
     int32_t *source = QC__NEW(r->ctx, int32_t, (size_t)r->n_vertices + (size_t)n_fans);
     uint8_t *taken = QC__ZERO(r->ctx, uint8_t, r->n_vertices);
     if (!vertex || !source || !taken) {
@@ -75,7 +75,7 @@ static qc_status copy_vertices(qc__repair *r, int32_t n_fans, const int32_t *fan
     memcpy(source, r->source_vertex, (size_t)n * sizeof *source);
     for (int32_t c = 0; c < 3 * r->n_faces; c++) {
         int32_t v = r->triangle[c];
-        if (fan[c] == next_fan) { /* the lowest corner of its fan                                   */
+        if (fan[c] == next_fan) { /* the lowest corner of its fan */
             next_fan++;
             if (taken[v] == 1 && !r->cut[v]) qc__repair_note(r, QC_REPAIR_NON_MANIFOLD_VERTEX, v);
             vertex[fan[c]] = taken[v] ? n : v;

@@ -64,9 +64,12 @@ static qc_status add_faces(qc__repair *r, qc__polygon *p) {
         p->n = distinct_corners(s, f, p->vertex);
         if (s->face_offset[f + 1] - s->face_offset[f] > 3)
             qc__repair_note(r, QC_REPAIR_TRIANGULATED, f);
-        if (p->n < 3) qc__repair_note(r, QC_REPAIR_DEGENERATE, f);
-        else if (p->n == 3) add_triangle(r, p->vertex[0], p->vertex[1], p->vertex[2], f);
-        else add_polygon(r, f, p);
+        if (p->n < 3)
+            qc__repair_note(r, QC_REPAIR_DEGENERATE, f);
+        else if (p->n == 3)
+            add_triangle(r, p->vertex[0], p->vertex[1], p->vertex[2], f);
+        else
+            add_polygon(r, f, p);
         if ((f % 4096 == 0 || p->n > 64) && !qc__progress(r->ctx, 0.1 * f / s->n_faces))
             return QC_ERR_CANCELLED;
     }

@@ -1,10 +1,10 @@
-/* Repair step 8: faces of (relatively) zero area. Needles lose their shortest edge by a collapse, caps
- * their longest edge by a flip, or are removed at the boundary; some rounds forwards and backwards,
- * since one can hide another. What cannot be improved stays and is logged. */
+/* Repair step 8: faces of (relatively) zero area. Needles lose their shortest edge by a collapse,
+ * caps their longest edge by a flip, or are removed at the boundary; some rounds forwards and
+ * backwards, since one can hide another. What cannot be improved stays and is logged. */
 #include "sdk/mesh/repair/edit.h"
 
 enum { ROUNDS = 32 };
-static const double LEAST = 1e-12; /* area over squared longest edge                               */
+static const double LEAST = 1e-12; /* area over squared longest edge */
 
 static double length2(const qc__repair *r, int32_t h) {
     const double *p = qc__repair_point(r, r->triangle[qc_next(h)]);
@@ -27,7 +27,7 @@ static bool improve(qc__edit *e, int32_t f) {
         if (d < least) least = d, shortest = h;
         if (d > most) most = d, longest = h;
     }
-    bool needle = least <= 1e-4 * most; /* squares: a hundredth of the longest edge                   */
+    bool needle = least <= 1e-4 * most; /* squares: a hundredth of the longest edge */
     if (needle && qc__edit_collapse(e, shortest, LEAST)) return true;
     if (e->r->twin[longest] < 0 && qc__edit_remove_boundary(e, f)) return true;
     return qc__edit_flip(e, longest, LEAST) || (!needle && qc__edit_collapse(e, shortest, LEAST));
@@ -70,8 +70,9 @@ qc_status qc__repair_zero_area(qc__repair *r) {
         if (status != QC_OK) break;
     }
     if (status == QC_OK && n > 0)
-        qc__log(r->ctx, QC_LOG_WARNING, "repair: %d faces of zero area could not be removed (face %d%s)",
-                (int)n, (int)r->source_face[bad[0]], n > 1 ? ", ..." : "");
+        qc__log(r->ctx, QC_LOG_WARNING,
+                "repair: %d faces of zero area could not be removed (face %d%s)", (int)n,
+                (int)r->source_face[bad[0]], n > 1 ? ", ..." : "");
     qc__edit_end(&e);
     qc__free(bad);
     return status;

@@ -10,7 +10,8 @@ typedef struct bad {
 
 static void check_all(qc_ctx *ctx, const bad *cases, size_t n) {
     for (size_t i = 0; i < n; i++)
-        expect_bad(ctx, cases[i].text, strlen(cases[i].text), cases[i].name, cases[i].where, cases[i].part);
+        expect_bad(ctx, cases[i].text, strlen(cases[i].text), cases[i].name, cases[i].where,
+                   cases[i].part);
 }
 #define CHECK(ctx, cases) check_all(ctx, cases, sizeof(cases) / sizeof *(cases))
 
@@ -73,21 +74,23 @@ static void test_off(void **state) {
         {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1\n3 0 1 2\n", 5, "coordinate 3 of vertex 2"},
         {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", 5, "ends before vertex 2 of 3"},
         {"a.off", OFF_TRIANGLE, 6, "ends before face 0 of 1"},
-        {"a.off", OFF_TRIANGLE "3 0 1 4000\n", 6, "a.off:6: vertex index 4000 is out of range (3 vertices)"},
+        {"a.off", OFF_TRIANGLE "3 0 1 4000\n", 6,
+         "a.off:6: vertex index 4000 is out of range (3 vertices)"},
         {"a.off", OFF_TRIANGLE "3 0 1 -1\n", 6, "vertex index -1"},
         {"a.off", OFF_TRIANGLE "2 0 1\n", 6, "2 corners"},
         {"a.off", OFF_TRIANGLE "-2 0 1\n", 6, "-2 corners"},
         {"a.off", OFF_TRIANGLE "2000000000 0 1 2\n", 7, "corner 4 of 2000000000"},
         {"a.off", OFF_TRIANGLE "3 0 1\n", 7, "corner 3 of 3"},
         {"a.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", 6, "no faces"},
-        {"a.off", "OFF\n3 1 0\n0 0 0\n1 inf 0\n0 1 0\n3 0 1 2\n", 4, "coordinate 2 of vertex 1 is not finite"},
+        {"a.off", "OFF\n3 1 0\n0 0 0\n1 inf 0\n0 1 0\n3 0 1 2\n", 4,
+         "coordinate 2 of vertex 1 is not finite"},
     };
     CHECK(*state, cases);
 }
 
 #define PLY_ASCII "ply\nformat ascii 1.0\n"
-#define XYZ "property float x\nproperty float y\nproperty float z\n"
-#define LIST "property list uchar int vertex_indices\n"
+#define XYZ       "property float x\nproperty float y\nproperty float z\n"
+#define LIST      "property list uchar int vertex_indices\n"
 
 static void test_ply(void **state) {
     const bad cases[] = {
@@ -98,21 +101,28 @@ static void test_ply(void **state) {
         {"a.ply", PLY_ASCII "element vertex -5\n", 3, "a name and a count"},
         {"a.ply", PLY_ASCII "property float x\n", 3, "before any element"},
         {"a.ply", PLY_ASCII "element vertex 1\nproperty complex x\n", 4, "type 'complex'"},
-        {"a.ply", PLY_ASCII "element face 1\nproperty list float int vertex_indices\n", 4, "property type"},
-        {"a.ply", PLY_ASCII "element vertex 1\nproperty float x\nend_header\n0\n", 3, "lacks a property"},
+        {"a.ply", PLY_ASCII "element face 1\nproperty list float int vertex_indices\n", 4,
+         "property type"},
+        {"a.ply", PLY_ASCII "element vertex 1\nproperty float x\nend_header\n0\n", 3,
+         "lacks a property"},
         {"a.ply", PLY_ASCII "element face 1\nproperty int x\nend_header\n0\n", 3, "lacks the list"},
         {"a.ply", PLY_ASCII "garbage\n", 3, "'garbage'"},
-        {"a.ply", PLY_ASCII "element vertex 4000000000\n" XYZ "end_header\n0 0 0\n", 3, "promises 4000000000"},
+        {"a.ply", PLY_ASCII "element vertex 4000000000\n" XYZ "end_header\n0 0 0\n", 3,
+         "promises 4000000000"},
         {"a.ply", PLY_ASCII "element vertex 1\n" XYZ "end_header\n0 0 nan\n", 8, "not finite"},
         {"a.ply", PLY_ASCII "element vertex 1\n" XYZ "end_header\n0 0 zero\n", 8, "not a number"},
         {"a.ply", PLY_ASCII "element vertex 1\n" XYZ "end_header\n0 0 0\n", 8, "no faces"},
-        {"a.ply", PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n3 0 0 1\n",
+        {"a.ply",
+         PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n3 0 0 1\n",
          10, "vertex index 1 is out of range (1 vertices)"},
-        {"a.ply", PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n2 0 0\n", 11,
-         "fewer than 3 corners"},
-        {"a.ply", PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n-3 0 0\n", 11,
-         "negative length"},
-        {"a.ply", PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n3 0 -1 0\n",
+        {"a.ply",
+         PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n2 0 0\n",
+         11, "fewer than 3 corners"},
+        {"a.ply",
+         PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n-3 0 0\n",
+         11, "negative length"},
+        {"a.ply",
+         PLY_ASCII "element vertex 1\n" XYZ "element face 1\n" LIST "end_header\n0 0 0\n3 0 -1 0\n",
          11, "no valid vertex index"},
     };
     CHECK(*state, cases);
@@ -138,18 +148,21 @@ static void test_binary_values(void **state) {
     bytes b;
     cube_bytes(CUBE_PLY_BIG, &b);
     const char *end = strstr(b.data, "end_header\n");
-    size_t data = (size_t)(end - b.data) + 11 + 10; /* behind the element before the vertices          */
+    size_t data = (size_t)(end - b.data) + 11 + 10; /* behind the element before the vertices */
     memcpy(b.data + data, "\x7f\xc0\0\0", 4);
-    expect_bad(*state, b.data, b.n, "nan.ply", (int64_t)data + 17, "vertex 0 of 8: a coordinate is not finite");
+    expect_bad(*state, b.data, b.n, "nan.ply", (int64_t)data + 17,
+               "vertex 0 of 8: a coordinate is not finite");
     cube_bytes(CUBE_PLY_BIG, &b);
-    size_t face = data + 8 * 17 + 5; /* first corner of the first face                                  */
+    size_t face = data + 8 * 17 + 5; /* first corner of the first face */
     memcpy(b.data + face, "\0\0\1\0", 4);
-    expect_bad(*state, b.data, b.n, "index.ply", 0, "vertex index 256 is out of range (8 vertices)");
+    expect_bad(*state, b.data, b.n, "index.ply", 0,
+               "vertex index 256 is out of range (8 vertices)");
     memcpy(b.data + face, "\xff\xff\xff\xff", 4);
     expect_bad(*state, b.data, b.n, "index.ply", (int64_t)face + 4, "no valid vertex index");
     cube_bytes(CUBE_STL_BINARY, &b);
     memcpy(b.data + 84 + 50 + 12, "\0\0\x80\x7f", 4);
-    expect_bad(*state, b.data, b.n, "inf.stl", 134, "triangle 1 has a coordinate which is not finite");
+    expect_bad(*state, b.data, b.n, "inf.stl", 134,
+               "triangle 1 has a coordinate which is not finite");
     memcpy(b.data + 80, "\xff\xff\xff\xff", 4);
     expect_bad(*state, b.data, b.n, "count.stl", (int64_t)b.n, "promises 4294967295 triangles");
 }
@@ -157,10 +170,14 @@ static void test_binary_values(void **state) {
 static void test_stl(void **state) {
     const bad cases[] = {
         {"a.stl", "solid x\nendsolid x\n", 3, "no faces"},
-        {"a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n", 6, "2 vertices"},
+        {"a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n", 6,
+         "2 vertices"},
         {"a.stl", "solid\nvertex 0 0 0\n", 2, "outside of 'outer loop'"},
-        {"a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n", 7, "cut off"},
-        {"a.stl", "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 nan 0\n", 5, "coordinate 2 of vertex 1"},
+        {"a.stl",
+         "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n", 7,
+         "cut off"},
+        {"a.stl", "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 nan 0\n", 5,
+         "coordinate 2 of vertex 1"},
         {"a.stl", "solid\nfacet\nouter loop\nvertex 0 0\n", 4, "coordinate 3 of vertex 0"},
         {"a.stl", "abc", 3, "84 bytes"},
     };
@@ -198,10 +215,10 @@ static void test_cancelled(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_any),           cmocka_unit_test(test_obj),
-        cmocka_unit_test(test_off),           cmocka_unit_test(test_ply),
-        cmocka_unit_test(test_truncated),     cmocka_unit_test(test_binary_values),
-        cmocka_unit_test(test_stl),           cmocka_unit_test(test_files),
+        cmocka_unit_test(test_any),       cmocka_unit_test(test_obj),
+        cmocka_unit_test(test_off),       cmocka_unit_test(test_ply),
+        cmocka_unit_test(test_truncated), cmocka_unit_test(test_binary_values),
+        cmocka_unit_test(test_stl),       cmocka_unit_test(test_files),
         cmocka_unit_test(test_cancelled)};
     return cmocka_run_group_tests(tests, setup, teardown);
 }

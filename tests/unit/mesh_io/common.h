@@ -1,4 +1,5 @@
-/* Shared by the tests of reading, writing and repair: contexts, parsing literals, expecting errors. */
+/* Shared by the tests of reading, writing and repair: contexts, parsing literals, expecting errors.
+ */
 #ifndef QC_TESTS_MESH_IO_COMMON_H
 #define QC_TESTS_MESH_IO_COMMON_H
 

@@ -18,9 +18,11 @@ static void check(qc_ctx *ctx, const char *path) {
     if (status != QC_OK) print_error("%s\n", qc_ctx_error(ctx)->text);
     assert_int_equal(status, QC_OK);
     assert_int_equal(mesh->euler, mesh->n_vertices - mesh->n_edges + mesh->n_faces);
-    assert_int_equal(mesh->euler, 2 * mesh->n_components - 2 * mesh->genus - mesh->n_boundary_loops);
+    assert_int_equal(mesh->euler,
+                     2 * mesh->n_components - 2 * mesh->genus - mesh->n_boundary_loops);
     for (int32_t v = 0; v < mesh->n_vertices; v++)
-        assert_memory_equal(mesh->position + 3 * v, soup->position + 3 * mesh->source_vertex[v], 3 * sizeof(double));
+        assert_memory_equal(mesh->position + 3 * v, soup->position + 3 * mesh->source_vertex[v],
+                            3 * sizeof(double));
     /* nothing of these meshes is lost */
     assert_int_equal(report->count[QC_REPAIR_SMALL_COMPONENT], 0);
     assert_true(mesh->n_faces >= soup->n_faces);

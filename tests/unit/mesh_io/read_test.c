@@ -37,11 +37,13 @@ static void test_obj_corners(void **state) {
                                     "v 0 0 0 1\nv 1 0 0\nv 1 1 0 .1 .2 .3\nv 0 1 0\n"
                                     "vn 0 0 1\nvt 0.25 0.5\nvt 1 \nvt 0 1 0\n"
                                     "g a\nf 1/1 2/2/1 3/-1/1\nusemtl b # c\nf -4 3//1 4\n"
-                                    "g a\nf 1/1/ 2/2 3/3 4\nl 1 2 3 # polyline\ncurv 0 1 1 2\n", "a.obj");
+                                    "g a\nf 1/1/ 2/2 3/3 4\nl 1 2 3 # polyline\ncurv 0 1 1 2\n",
+                                    "a.obj");
     assert_int_equal(m->n_vertices, 4);
     assert_int_equal(m->n_corners, 10);
     assert_int_equal(m->n_uvs, 3);
-    const int32_t vertex[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 3}, uv[] = {0, 1, 2, -1, -1, -1, 0, 1, 2, -1};
+    const int32_t vertex[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 3},
+                  uv[] = {0, 1, 2, -1, -1, -1, 0, 1, 2, -1};
     const int32_t group[] = {1, 2, 1}, line[] = {0, 1, 1, 2}, at[] = {10, 12, 14};
     assert_memory_equal(m->face_vertex, vertex, sizeof vertex);
     assert_memory_equal(m->corner_uv, uv, sizeof uv);
@@ -54,10 +56,12 @@ static void test_obj_corners(void **state) {
 }
 
 static void test_obj_layout(void **state) {
-    /* faces before vertices, byte order mark, CR line ends, continued lines, comment with backslash */
+    /* faces before vertices, byte order mark, CR line ends, continued lines, comment with backslash
+ */
     qc_polygon_mesh *m = parse_text(*state,
                                     "\xef\xbb\xbf# note \\\rf 1 \\\r 2 \\\r\n3\r"
-                                    "\tv 0 0 \\\n 0\rv 1 0 0\rv 0 1 0", "b.obj");
+                                    "\tv 0 0 \\\n 0\rv 1 0 0\rv 0 1 0",
+                                    "b.obj");
     assert_int_equal(m->n_vertices, 3);
     assert_int_equal(m->n_faces, 1);
     assert_int_equal(m->face_line[0], 2);
@@ -85,10 +89,12 @@ static void test_off_headers(void **state) {
 
 static void test_stl_variants(void **state) {
     /* two solids, upper case, no name */
-    qc_polygon_mesh *m = parse_text(*state,
-                                    "solid\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\n"
-                                    "VERTEX 0 1e0 0\nENDLOOP\nENDFACET\nendsolid\nsolid b\nfacet normal 0 0 1\n"
-                                    "outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n", "a.stl");
+    qc_polygon_mesh *m =
+        parse_text(*state,
+                   "solid\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\n"
+                   "VERTEX 0 1e0 0\nENDLOOP\nENDFACET\nendsolid\nsolid b\nfacet normal 0 0 1\n"
+                   "outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n",
+                   "a.stl");
     assert_int_equal(m->n_faces, 2);
     qc_object_release(m);
     /* a comment as the title of a binary file, nothing but blanks in it */
@@ -107,9 +113,14 @@ static void test_ply_line_ends(void **state) {
     /* a lone CR ends the header; the first data byte is a line feed (a vertex coordinate) */
     for (int lone = 0; lone < 2; lone++) {
         const char *end = lone ? "\r" : "\r\n";
-        const char *const lines[] = {"ply", "format binary_little_endian 1.0", "element vertex 3",
-                                     "property char x", "property char y", "property char z",
-                                     "element face 1", "property list uchar uchar vertex_index",
+        const char *const lines[] = {"ply",
+                                     "format binary_little_endian 1.0",
+                                     "element vertex 3",
+                                     "property char x",
+                                     "property char y",
+                                     "property char z",
+                                     "element face 1",
+                                     "property list uchar uchar vertex_index",
                                      "end_header"};
         bytes b = {.n = 0};
         for (size_t i = 0; i < 9; i++) {
@@ -126,8 +137,8 @@ static void test_ply_line_ends(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cube),        cmocka_unit_test(test_obj_corners),
-        cmocka_unit_test(test_obj_layout),  cmocka_unit_test(test_off_headers),
+        cmocka_unit_test(test_cube),         cmocka_unit_test(test_obj_corners),
+        cmocka_unit_test(test_obj_layout),   cmocka_unit_test(test_off_headers),
         cmocka_unit_test(test_stl_variants), cmocka_unit_test(test_ply_line_ends)};
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -96,17 +96,25 @@ static void test_non_convex(void **state) {
         char text[512];
         int n = 0;
         for (int i = 0; i < 6; i++)
-            n += snprintf(text + n, sizeof text - (size_t)n, "v %g %g 0\n", l[(s + i) % 6][0], l[(s + i) % 6][1]);
+            n += snprintf(text + n, sizeof text - (size_t)n, "v %g %g 0\n", l[(s + i) % 6][0],
+                          l[(s + i) % 6][1]);
         snprintf(text + n, sizeof text - (size_t)n, "f 1 2 3 4 5 6\n");
         check_planar(*state, text, 3, 4);
     }
     /* a dart, and a comb whose teeth hide each other */
-    check_planar(*state, "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv 8 0 0\nv 8 8 0\nv 1 2 0\nf 1 2 3 4\nf 2 5 6 3\nf 4 3 6\n",
+    check_planar(*state,
+                 "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nv 8 0 0\nv 8 8 0\nv 1 2 0\nf 1 2 3 4\nf 2 5 "
+                 "6 3\nf 4 3 6\n",
                  48, 5);
-    check_planar(*state, "v 0 0 0\nv 5 0 0\nv 5 3 0\nv 4 3 0\nv 4 1 0\nv 3 1 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\n"
-                         "v 1 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8 9 10 11 12\n", 11, 10);
+    check_planar(
+        *state,
+        "v 0 0 0\nv 5 0 0\nv 5 3 0\nv 4 3 0\nv 4 1 0\nv 3 1 0\nv 3 3 0\nv 2 3 0\nv 2 1 0\nv 1 1 0\n"
+        "v 1 3 0\nv 0 3 0\nf 1 2 3 4 5 6 7 8 9 10 11 12\n",
+        11, 10);
     /* corners in the middle of straight sides */
-    check_planar(*state, "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nv 0 2 0\nv 0 1 0\nf 1 2 3 4 5 6 7 8\n",
+    check_planar(*state,
+                 "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 2 2 0\nv 1 2 0\nv 0 2 0\nv 0 1 0\nf 1 2 3 "
+                 "4 5 6 7 8\n",
                  4, 6);
 }
 
@@ -132,7 +140,8 @@ static void test_welded_soup(void **state) {
         assert_int_equal(r.mesh->n_vertices, 8);
         assert_int_equal(r.mesh->n_faces, 12);
         assert_int_equal(r.mesh->euler, 2);
-        expect_counts(r.report, format < CUBE_STL_ASCII ? "0 0 0 0 0 0 0 0 0 0" : "0 28 0 0 0 0 0 0 0 0");
+        expect_counts(r.report,
+                      format < CUBE_STL_ASCII ? "0 0 0 0 0 0 0 0 0 0" : "0 28 0 0 0 0 0 0 0 0");
         for (int i = 0; i < 36; i++)
             for (int k = 0; k < 3; k++)
                 assert_true(r.mesh->position[3 * r.mesh->face_vertex[i] + k] ==
@@ -142,16 +151,19 @@ static void test_welded_soup(void **state) {
     }
 }
 
-/* A grid of n x n squares in the plane z = 0 from (x, 0), vertices appended; returns the text length. */
+/* A grid of n x n squares in the plane z = 0 from (x, 0), vertices appended; returns the text
+ * length. */
 static size_t put_grid(char *text, size_t size, int n, double x, double z, int first) {
     size_t used = 0;
     for (int i = 0; i <= n; i++)
         for (int j = 0; j <= n; j++)
-            used += (size_t)snprintf(text + used, size - used, "v %g %d %g\n", x + i, j, z * (i > 0));
+            used +=
+                (size_t)snprintf(text + used, size - used, "v %g %d %g\n", x + i, j, z * (i > 0));
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) {
             int a = first + i * (n + 1) + j, b = a + n + 1;
-            used += (size_t)snprintf(text + used, size - used, "f %d %d %d\nf %d %d %d\n", a, b, b + 1, a, b + 1, a + 1);
+            used += (size_t)snprintf(text + used, size - used, "f %d %d %d\nf %d %d %d\n", a, b,
+                                     b + 1, a, b + 1, a + 1);
         }
     return used;
 }
@@ -175,7 +187,8 @@ static void test_welded_seam(void **state) {
 }
 
 static void test_faces_dropped(void **state) {
-    repaired r = repair_text(*state, PYRAMID SIDES "f 1 3 2\nf 1 4 3\nf 1 1 2\nf 1 2 2 1\nf 5 1 2\nf 2 1 5\n");
+    repaired r = repair_text(*state, PYRAMID SIDES
+                             "f 1 3 2\nf 1 4 3\nf 1 1 2\nf 1 2 2 1\nf 5 1 2\nf 2 1 5\n");
     expect_counts(r.report, "1 0 2 2 0 0 0 0 0 0");
     const int32_t duplicate[] = {8, 9, -1, -1};
     assert_memory_equal(r.report->first[QC_REPAIR_DUPLICATE], duplicate, sizeof duplicate);
@@ -184,10 +197,11 @@ static void test_faces_dropped(void **state) {
 }
 
 static void test_non_manifold_edge(void **state) {
-    static char text[4096]; /* a fin which stands on an edge of a plane                              */
+    static char text[4096]; /* a fin which stands on an edge of a plane */
     size_t n = put_grid(text, sizeof text, 2, 0, 0, 1);
-    snprintf(text + n, sizeof text - n, "v 1 1.5 1\nv 1 1 2\nv 1 2 2\n"
-                                        "f 5 6 10\nf 5 10 11\nf 11 10 12\nf 10 6 12\n");
+    snprintf(text + n, sizeof text - n,
+             "v 1 1.5 1\nv 1 1 2\nv 1 2 2\n"
+             "f 5 6 10\nf 5 10 11\nf 11 10 12\nf 10 6 12\n");
     repaired r = repair_text(*state, text);
     expect_counts(r.report, "0 0 0 0 1 0 0 0 0 0");
     assert_int_equal(r.mesh->n_faces, 12);
@@ -196,7 +210,7 @@ static void test_non_manifold_edge(void **state) {
     release(r);
     /* two pyramids which touch in an edge come apart as solids */
     r = repair_text(*state, PYRAMID "v 1 -1 0\nv 0 -1 0\nv .5 -.5 -1\n" SIDES "f 1 3 2\nf 1 4 3\n"
-                            "f 1 2 8\nf 7 1 8\nf 6 7 8\nf 2 6 8\nf 2 1 6\nf 6 1 7\n");
+                                    "f 1 2 8\nf 7 1 8\nf 6 7 8\nf 2 6 8\nf 2 1 6\nf 6 1 7\n");
     assert_int_equal(r.report->count[QC_REPAIR_NON_MANIFOLD_EDGE], 1);
     assert_int_equal(r.mesh->n_components, 2);
     assert_int_equal(r.mesh->n_boundary_loops, 0);
@@ -205,7 +219,8 @@ static void test_non_manifold_edge(void **state) {
 }
 
 static void test_oriented(void **state) {
-    repaired r = repair_text(*state, PYRAMID "f 1 2 5\nf 2 5 3\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n");
+    repaired r =
+        repair_text(*state, PYRAMID "f 1 2 5\nf 2 5 3\nf 3 4 5\nf 4 1 5\nf 1 3 2\nf 1 4 3\n");
     expect_counts(r.report, "0 0 0 0 0 1 0 0 0 0");
     assert_int_equal(r.report->first[QC_REPAIR_ORIENTED][0], 1);
     release(r);
@@ -228,11 +243,13 @@ static void test_moebius(void **state) {
     int n = 0;
     for (int i = 0; i < 5; i++)
         for (int k = -1; k < 2; k += 2)
-            n += snprintf(text + n, sizeof text - (size_t)n, "v %g %g %g\n", cos(1.2566 * i) * (2 + k * cos(.6283 * i)),
+            n += snprintf(text + n, sizeof text - (size_t)n, "v %g %g %g\n",
+                          cos(1.2566 * i) * (2 + k * cos(.6283 * i)),
                           sin(1.2566 * i) * (2 + k * cos(.6283 * i)), k * sin(.6283 * i));
     for (int i = 0; i < 5; i++) {
         int a = 2 * i, b = a + 1, c = i < 4 ? a + 2 : 1, d = i < 4 ? a + 3 : 0;
-        n += snprintf(text + n, sizeof text - (size_t)n, "f %d %d %d\nf %d %d %d\n", a + 1, c + 1, b + 1, b + 1, c + 1, d + 1);
+        n += snprintf(text + n, sizeof text - (size_t)n, "f %d %d %d\nf %d %d %d\n", a + 1, c + 1,
+                      b + 1, b + 1, c + 1, d + 1);
     }
     qc_polygon_mesh *soup = parse_text(*state, text, "a.obj");
     qc_mesh *mesh = NULL;
@@ -244,8 +261,9 @@ static void test_moebius(void **state) {
 }
 
 static void test_non_manifold_vertex(void **state) {
-    repaired r = repair_text(*state, PYRAMID "v 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\n" SIDES "f 1 3 2\nf 1 4 3\n"
-                                     "f 7 6 5\nf 8 7 5\nf 9 8 5\nf 6 9 5\nf 6 7 8\nf 6 8 9\n");
+    repaired r = repair_text(*state, PYRAMID
+                             "v 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\n" SIDES "f 1 3 2\nf 1 4 3\n"
+                             "f 7 6 5\nf 8 7 5\nf 9 8 5\nf 6 9 5\nf 6 7 8\nf 6 8 9\n");
     expect_counts(r.report, "0 0 0 0 0 0 1 0 0 0");
     assert_int_equal(r.report->first[QC_REPAIR_NON_MANIFOLD_VERTEX][0], 4);
     assert_int_equal(r.mesh->n_vertices, 10);
@@ -254,8 +272,11 @@ static void test_non_manifold_vertex(void **state) {
 }
 
 static void test_unreferenced_and_small(void **state) {
-    repaired r = repair_text(*state, "v 9 9 9\n" "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 1\nv 7 7 7\nv 8 7 7\nv 7 8 7\nv 3 3 3\n"
-                                     "f 2 3 6\nf 3 4 6\nf 4 5 6\nf 5 2 6\nf 2 4 3\nf 2 5 4\nf 7 8 9\n");
+    repaired r = repair_text(
+        *state,
+        "v 9 9 9\n"
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 1\nv 7 7 7\nv 8 7 7\nv 7 8 7\nv 3 3 3\n"
+        "f 2 3 6\nf 3 4 6\nf 4 5 6\nf 5 2 6\nf 2 4 3\nf 2 5 4\nf 7 8 9\n");
     expect_counts(r.report, "0 0 0 0 0 0 0 0 2 1");
     assert_int_equal(r.report->first[QC_REPAIR_UNREFERENCED][0], 0);
     assert_int_equal(r.report->first[QC_REPAIR_UNREFERENCED][1], 9);
@@ -273,16 +294,21 @@ static void test_random_soups(void **state) {
     for (int round = 0; round < 400; round++) {
         qc_polygon_mesh *soup = NULL;
         int n_vertices = 4 + round % 9, n_faces = 4 + round % 29;
-        assert_int_equal(qc_polygon_mesh_create(*state, n_vertices, n_faces, 3 * n_faces, 0, 0, 0, &soup), QC_OK);
+        assert_int_equal(
+            qc_polygon_mesh_create(*state, n_vertices, n_faces, 3 * n_faces, 0, 0, 0, &soup),
+            QC_OK);
         for (int i = 0; i < 3 * n_vertices; i++)
-            soup->position[i] = (double)((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 60);
+            soup->position[i] =
+                (double)((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 60);
         for (int i = 0; i < 3 * n_faces; i++)
             soup->face_vertex[i] =
-                (int32_t)((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 33) % n_vertices;
+                (int32_t)((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 33) %
+                n_vertices;
         for (int f = 0; f <= n_faces; f++) soup->face_offset[f] = 3 * f;
         repaired r = {0};
         qc_status status = qc_mesh_repair(*state, soup, &r.mesh, &r.report);
-        if (status != QC_OK && status != QC_ERR_INPUT) print_error("%s\n", qc_ctx_error(*state)->text);
+        if (status != QC_OK && status != QC_ERR_INPUT)
+            print_error("%s\n", qc_ctx_error(*state)->text);
         assert_true(status == QC_OK || status == QC_ERR_INPUT);
         valid += status == QC_OK;
         qc_object_release(soup);
@@ -294,20 +320,27 @@ static void test_random_soups(void **state) {
 static void test_names(void **state) {
     (void)state;
     for (int i = 0; i < QC_REPAIR_KINDS; i++)
-        for (int j = 0; j < i; j++) assert_string_not_equal(qc_repair_kind_name(i), qc_repair_kind_name(j));
+        for (int j = 0; j < i; j++)
+            assert_string_not_equal(qc_repair_kind_name(i), qc_repair_kind_name(j));
     assert_string_equal(qc_repair_kind_name(QC_REPAIR_TRIANGULATED), "polygons triangulated");
     assert_string_equal(qc_repair_kind_name(-1), "unknown repair");
     assert_string_equal(qc_repair_kind_name(QC_REPAIR_KINDS), "unknown repair");
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean),         cmocka_unit_test(test_triangulated),
-        cmocka_unit_test(test_non_convex),    cmocka_unit_test(test_pocket),
-        cmocka_unit_test(test_welded_soup),   cmocka_unit_test(test_welded_seam),
-        cmocka_unit_test(test_faces_dropped), cmocka_unit_test(test_non_manifold_edge),
-        cmocka_unit_test(test_oriented),      cmocka_unit_test(test_moebius),
-        cmocka_unit_test(test_non_manifold_vertex), cmocka_unit_test(test_unreferenced_and_small),
-        cmocka_unit_test(test_random_soups),  cmocka_unit_test(test_names)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_clean),
+                                       cmocka_unit_test(test_triangulated),
+                                       cmocka_unit_test(test_non_convex),
+                                       cmocka_unit_test(test_pocket),
+                                       cmocka_unit_test(test_welded_soup),
+                                       cmocka_unit_test(test_welded_seam),
+                                       cmocka_unit_test(test_faces_dropped),
+                                       cmocka_unit_test(test_non_manifold_edge),
+                                       cmocka_unit_test(test_oriented),
+                                       cmocka_unit_test(test_moebius),
+                                       cmocka_unit_test(test_non_manifold_vertex),
+                                       cmocka_unit_test(test_unreferenced_and_small),
+                                       cmocka_unit_test(test_random_soups),
+                                       cmocka_unit_test(test_names)};
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -10,12 +10,25 @@ static const char PATH[] = "mesh_io_write_test.obj";
 static void test_round_trip(void **state) {
     qc_polygon_mesh *m = NULL, *n = NULL;
     assert_int_equal(qc_polygon_mesh_create(*state, 6, 3, 11, 4, 2,
-                                            QC_POLYGON_FACE_GROUP | QC_POLYGON_FACE_LINE, &m), QC_OK);
-    const double values[] = {0.1, 1.0 / 3, -2e-310, 1e300, 123456789.123456789, -0.0, 5, 1e22,
-                             0x1p-1074, 3.5, 0x1.fffffffffffffp1023, 1e-7, 0.30000000000000004};
+                                            QC_POLYGON_FACE_GROUP | QC_POLYGON_FACE_LINE, &m),
+                     QC_OK);
+    const double values[] = {0.1,
+                             1.0 / 3,
+                             -2e-310,
+                             1e300,
+                             123456789.123456789,
+                             -0.0,
+                             5,
+                             1e22,
+                             0x1p-1074,
+                             3.5,
+                             0x1.fffffffffffffp1023,
+                             1e-7,
+                             0.30000000000000004};
     for (int i = 0; i < 18; i++) m->position[i] = values[i % 13];
     for (int i = 0; i < 8; i++) m->uv[i] = values[(i + 5) % 13] / 3;
-    const int32_t vertex[] = {0, 1, 2, 3, 3, 2, 1, 5, 4, 3, 2}, uv[] = {0, 1, 2, 3, -1, -1, -1, 1, 1, 0, 2};
+    const int32_t vertex[] = {0, 1, 2, 3, 3, 2, 1, 5, 4, 3, 2},
+                  uv[] = {0, 1, 2, 3, -1, -1, -1, 1, 1, 0, 2};
     const int32_t offset[] = {0, 4, 7, 11}, group[] = {1, 1, 2}, line[] = {0, 5, 5, 2};
     memcpy(m->face_vertex, vertex, sizeof vertex);
     memcpy(m->corner_uv, uv, sizeof uv);
@@ -32,7 +45,7 @@ static void test_round_trip(void **state) {
     assert_memory_equal(n->face_offset, offset, sizeof offset);
     assert_memory_equal(n->face_group, group, sizeof group);
     assert_memory_equal(n->line, line, sizeof line);
-    assert_int_equal(n->face_line[0], 2 + 6 + 4 + 1 + 1); /* behind comments, v, vt and g              */
+    assert_int_equal(n->face_line[0], 2 + 6 + 4 + 1 + 1); /* behind comments, v, vt and g */
     qc_object_release(m);
     qc_object_release(n);
     remove(PATH);

@@ -12,7 +12,8 @@ static double worst_face(const qc_mesh *m) {
         for (int k = 0; k < 3; k++) p[k] = m->position + 3 * m->face_vertex[3 * f + k];
         for (int k = 0; k < 3; k++) {
             int i = (k + 1) % 3, j = (k + 2) % 3;
-            double n = (p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) - (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]);
+            double n = (p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) -
+                       (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]);
             double d = 0;
             n2 += n * n;
             for (int c = 0; c < 3; c++) d += (p[i][c] - p[j][c]) * (p[i][c] - p[j][c]);
@@ -57,35 +58,61 @@ static void check(qc_ctx *ctx, const example *x, double worst) {
 
 /* An octahedron 1..6. */
 #define OCTAHEDRON "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
-#define LOWER "f 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n"
+#define LOWER      "f 2 1 6\nf 3 2 6\nf 4 3 6\nf 1 4 6\n"
 
 /* The edge 1-2 is split in its middle on one side only: a cap between. */
 static void test_cap(void **state) {
-    const example x = {OCTAHEDRON "v .5 .5 0\n" LOWER "f 1 7 5\nf 7 2 5\nf 1 2 7\nf 2 3 5\nf 3 4 5\nf 4 1 5\n",
-                       1, 7, 10, 2, 0};
+    const example x = {OCTAHEDRON "v .5 .5 0\n" LOWER
+                                  "f 1 7 5\nf 7 2 5\nf 1 2 7\nf 2 3 5\nf 3 4 5\nf 4 1 5\n",
+                       1,
+                       7,
+                       10,
+                       2,
+                       0};
     check(*state, &x, 0.01);
 }
 
 /* The top is two vertices 1e-14 apart: two needles between them. */
 static void test_needle(void **state) {
-    const example x = {OCTAHEDRON "v 1e-14 0 1\n" LOWER "f 1 2 7\nf 2 5 7\nf 2 3 5\nf 3 4 5\nf 4 7 5\nf 4 1 7\n", 1, 6, 8,
-                       2, 0};
+    const example x = {OCTAHEDRON "v 1e-14 0 1\n" LOWER
+                                  "f 1 2 7\nf 2 5 7\nf 2 3 5\nf 3 4 5\nf 4 7 5\nf 4 1 7\n",
+                       1,
+                       6,
+                       8,
+                       2,
+                       0};
     check(*state, &x, 0.01);
 }
 
 /* The same with equal coordinates, which welding leaves alone as the vertices are inside. */
 static void test_zero_edge(void **state) {
-    const example x = {OCTAHEDRON "v 0 0 1\n" LOWER "f 1 2 7\nf 2 5 7\nf 2 3 5\nf 3 4 5\nf 4 7 5\nf 4 1 7\n", 1, 6, 8, 2, 0};
+    const example x = {OCTAHEDRON "v 0 0 1\n" LOWER
+                                  "f 1 2 7\nf 2 5 7\nf 2 3 5\nf 3 4 5\nf 4 7 5\nf 4 1 7\n",
+                       1,
+                       6,
+                       8,
+                       2,
+                       0};
     check(*state, &x, 0.01);
 }
 
 /* Caps at the boundary: one whose apex is inside is removed, an ear is flipped. */
 static void test_boundary(void **state) {
     const example inside = {"v -1 0 0\nv 1 0 0\nv 0 0 0\nv 1 1 0\nv -1 1 0\nv 0 2 0\n"
-                            "f 1 2 3\nf 3 2 4\nf 3 4 5\nf 1 3 5\nf 5 4 6\n", 1, 6, 4, 1, 1};
+                            "f 1 2 3\nf 3 2 4\nf 3 4 5\nf 1 3 5\nf 5 4 6\n",
+                            1,
+                            6,
+                            4,
+                            1,
+                            1};
     check(*state, &inside, 0.01);
     const example ear = {"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 0\nv .5 0 0\n"
-                         "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 2 1 6\n", 1, 6, 5, 1, 1};
+                         "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf 2 1 6\n",
+                         1,
+                         6,
+                         5,
+                         1,
+                         1};
     check(*state, &ear, 0.01);
 }
 
@@ -95,7 +122,8 @@ static void test_many_caps(void **state) {
     enum { N = 30 };
     int n = snprintf(text, sizeof text, OCTAHEDRON);
     for (int i = 1; i < N; i++)
-        n += snprintf(text + n, sizeof text - (size_t)n, "v %.17g %.17g 0\n", 1 - i / (double)N, i / (double)N);
+        n += snprintf(text + n, sizeof text - (size_t)n, "v %.17g %.17g 0\n", 1 - i / (double)N,
+                      i / (double)N);
     n += snprintf(text + n, sizeof text - (size_t)n, LOWER "f 2 3 5\nf 3 4 5\nf 4 1 5\n");
     for (int i = 0; i < N; i++) { /* fan from 5 to the points, fan of flat caps from 1 */
         int a = i == 0 ? 1 : 6 + i, b = i == N - 1 ? 2 : 7 + i;
@@ -112,8 +140,8 @@ static void test_many_caps(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cap), cmocka_unit_test(test_needle),
-                                       cmocka_unit_test(test_zero_edge), cmocka_unit_test(test_boundary),
-                                       cmocka_unit_test(test_many_caps)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_cap), cmocka_unit_test(test_needle), cmocka_unit_test(test_zero_edge),
+        cmocka_unit_test(test_boundary), cmocka_unit_test(test_many_caps)};
     return cmocka_run_group_tests(tests, setup, teardown);
 }
