@@ -1,14 +1,13 @@
-/* Symbolic analysis: order, elimination tree, supernodes, row structure, where each entry of A goes,
- * and the schedule of the factorisation. */
+/* Symbolic analysis: order, elimination tree, supernodes, row structure, where each entry of A
+ * goes, and the schedule of the factorisation. */
 #include "sdk/sparse/internal.h"
 #include <string.h>
 
 void qc_symbolic_free(qc_symbolic *S) {
     if (!S || atomic_fetch_sub_explicit(&S->references, 1, memory_order_acq_rel) > 1) return;
-    void *arrays[] = { S->perm,     S->inverse, S->super,    S->super_of, S->parent,
-                       S->child,    S->sibling, S->rowptr,   S->rows,     S->relative,
-                       S->panel,    S->a_colptr, S->a_row,   S->entry,    S->from,
-                       S->to };
+    void *arrays[] = {S->perm,    S->inverse, S->super, S->super_of, S->parent, S->child,
+                      S->sibling, S->rowptr,  S->rows,  S->relative, S->panel,  S->a_colptr,
+                      S->a_row,   S->entry,   S->from,  S->to};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) qc__free(arrays[i]);
     qc__plan_free(&S->plan);
     qc__free(S);
@@ -49,7 +48,7 @@ static qc_status eliminate(qc_ctx *ctx, qc__pattern A, qc_symbolic *S, int32_t *
     int32_t *row = NULL, *lower_row = NULL;
     qc_status status = qc__permute_upper(ctx, A, S->inverse, &colptr, &row);
     if (status != QC_OK) return status;
-    qc__etree((qc__pattern){ n, colptr, row }, parent, free_work);
+    qc__etree((qc__pattern){n, colptr, row}, parent, free_work);
     qc__postorder(n, parent, free_work, free_work + n);
     apply_postorder(S, free_work, parent, free_work + n);
     qc__free(colptr);
@@ -58,9 +57,9 @@ static qc_status eliminate(qc_ctx *ctx, qc__pattern A, qc_symbolic *S, int32_t *
     row = NULL;
     status = qc__permute_upper(ctx, A, S->inverse, &colptr, &row);
     if (status == QC_OK)
-        status = qc__transpose(ctx, (qc__pattern){ n, colptr, row }, &lower_ptr, &lower_row);
+        status = qc__transpose(ctx, (qc__pattern){n, colptr, row}, &lower_ptr, &lower_row);
     if (status == QC_OK) {
-        qc__column_counts((qc__pattern){ n, lower_ptr, lower_row }, parent, count, free_work);
+        qc__column_counts((qc__pattern){n, lower_ptr, lower_row}, parent, count, free_work);
         for (int32_t j = 0; j < n; j++) {
             const double c = count[j] - 1;
             S->nnz_l += count[j];
@@ -130,8 +129,10 @@ static int64_t local_row(const qc_symbolic *S, int32_t s, int32_t row) {
     lo += w;
     while (hi - lo > 1) {
         const int64_t middle = lo + (hi - lo) / 2;
-        if (S->rows[middle] <= row) lo = middle;
-        else hi = middle;
+        if (S->rows[middle] <= row)
+            lo = middle;
+        else
+            hi = middle;
     }
     return lo - S->rowptr[s];
 }
@@ -204,24 +205,26 @@ static qc_status create(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *op
     atomic_init(&S->references, 1);
     S->n = A.n;
     status = analyze(ctx, A, options, S);
-    if (status == QC_OK) *out = S;
-    else qc_symbolic_free(S);
+    if (status == QC_OK)
+        *out = S;
+    else
+        qc_symbolic_free(S);
     return status;
 }
 
 qc_status qc_analyze(qc_ctx *ctx, const qc_hermitian *A, const qc_analyze_options *options,
                      qc_symbolic **out) {
-    return create(ctx, (qc__pattern){ A->n, A->colptr, A->row }, options, out);
+    return create(ctx, (qc__pattern){A->n, A->colptr, A->row}, options, out);
 }
 
 qc_status qc_analyze_real(qc_ctx *ctx, const qc_symmetric *A, const qc_analyze_options *options,
                           qc_symbolic **out) {
-    return create(ctx, (qc__pattern){ A->n, A->colptr, A->row }, options, out);
+    return create(ctx, (qc__pattern){A->n, A->colptr, A->row}, options, out);
 }
 
 void qc_symbolic_get_info(const qc_symbolic *S, qc_symbolic_info *info) {
-    qc_symbolic_info all = { sizeof all, S->n, S->nsuper, S->plan.largest_front, S->nnz_l, 0,
-                             S->flops, 0, 0 };
+    qc_symbolic_info all = {sizeof all, S->n, S->nsuper, S->plan.largest_front, S->nnz_l, 0,
+                            S->flops,   0,    0};
     for (int32_t s = 0; s < S->nsuper; s++) {
         const int64_t w = S->super[s + 1] - S->super[s], r = S->rowptr[s + 1] - S->rowptr[s];
         all.stored += w * r - w * (w - 1) / 2;

@@ -1,7 +1,7 @@
 /* Column counts of L in nearly O(nnz(A)) (Gilbert, Ng, Peyton 1994).
  *
- * Row i of L is the subtree T_i of the elimination tree spanned by the k with A(i,k) != 0 and i. Its
- * indicator is the subtree sum of: +1 at each leaf of T_i, -1 at the lowest common ancestor of
+ * Row i of L is the subtree T_i of the elimination tree spanned by the k with A(i,k) != 0 and i.
+ * Its indicator is the subtree sum of: +1 at each leaf of T_i, -1 at the lowest common ancestor of
  * consecutive leaves, -1 at parent(i). Summing over all i gives the count of every column. */
 #include "sdk/sparse/internal.h"
 
@@ -18,10 +18,10 @@ static int32_t find_root(int32_t *set, int32_t k) {
 
 void qc__column_counts(qc__pattern lower, const int32_t *parent, int32_t *count, int32_t *work) {
     const int32_t n = lower.n;
-    int32_t *first = work;                      /* first descendant                               */
-    int32_t *seen = work + n;                   /* first of the last leaf of T_i found, or -1     */
-    int32_t *leaf = work + 2 * (int64_t)n;      /* that leaf                                      */
-    int32_t *set = work + 3 * (int64_t)n;       /* union-find: highest finished ancestor          */
+    int32_t *first = work;                 /* first descendant                               */
+    int32_t *seen = work + n;              /* first of the last leaf of T_i found, or -1     */
+    int32_t *leaf = work + 2 * (int64_t)n; /* that leaf                                      */
+    int32_t *set = work + 3 * (int64_t)n;  /* union-find: highest finished ancestor          */
     for (int32_t k = 0; k < n; k++) {
         first[k] = -1;
         seen[k] = leaf[k] = -1;

@@ -68,8 +68,10 @@ qc_status qc__permute_upper(qc_ctx *ctx, qc__pattern A, const int32_t *inverse, 
             for (int64_t p = A.colptr[j]; p < A.colptr[j + 1]; p++) {
                 const int32_t i = A.row[p], a = inverse[i], b = inverse[j];
                 if (i == j) continue;
-                if (pass == 0) ptr[a > b ? a : b]++;
-                else out[ptr[a > b ? a : b]++] = a < b ? a : b;
+                if (pass == 0)
+                    ptr[a > b ? a : b]++;
+                else
+                    out[ptr[a > b ? a : b]++] = a < b ? a : b;
             }
         if (pass == 0) cumulate(n, ptr);
     }

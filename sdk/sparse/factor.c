@@ -2,7 +2,8 @@
 #include "sdk/sparse/internal.h"
 #include <math.h>
 
-qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t components, qc_factor **out) {
+qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t components,
+                            qc_factor **out) {
     qc_factor *F = QC__ZERO(ctx, qc_factor, 1);
     if (!F) return QC_ERR_NOMEM;
     F->S = qc__symbolic_retain(S);

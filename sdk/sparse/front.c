@@ -1,7 +1,7 @@
 /* Dense partial LDL^H of one front: the columns of its panel (r x w), then the update matrix
- * U <- U - L21 D L21^H. Narrow fronts use own loops, since the overhead of a BLAS call is larger than
- * their work; wide ones go through the Cholesky factor L D^(1/2), for which LAPACK and BLAS-3 exist.
- * Compiled twice, see scalar.h. */
+ * U <- U - L21 D L21^H. Narrow fronts use own loops, since the overhead of a BLAS call is larger
+ * than their work; wide ones go through the Cholesky factor L D^(1/2), for which LAPACK and BLAS-3
+ * exist. Compiled twice, see scalar.h. */
 #include "sdk/sparse/scalar.h"
 #include <cblas.h>
 #include <lapacke.h>
@@ -145,7 +145,7 @@ static int32_t blas_factor(int32_t r, int32_t w, double *panel, double *U, doubl
         cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, m, w, 1, panel,
                     r, below, r);
 #else
-        const double one[2] = { 1, 0 };
+        const double one[2] = {1, 0};
         cblas_ztrsm(CblasColMajor, CblasRight, CblasLower, CblasConjTrans, CblasNonUnit, m, w, one,
                     panel, r, below, r);
 #endif

@@ -1,8 +1,8 @@
 /* The data behind qc/sparse.h and the steps of the analysis. Not installed.
  *
- * Three numberings of rows occur: the caller's, `permuted` (elimination order) and `local` (position
- * in the row list of one supernode). Values are doubles with `components` = 1 (real) or 2 (complex,
- * interleaved) numbers per entry; offsets count entries. */
+ * Three numberings of rows occur: the caller's, `permuted` (elimination order) and `local`
+ * (position in the row list of one supernode). Values are doubles with `components` = 1 (real) or 2
+ * (complex, interleaved) numbers per entry; offsets count entries. */
 #ifndef QC_SPARSE_INTERNAL_H
 #define QC_SPARSE_INTERNAL_H
 
@@ -36,10 +36,10 @@ typedef struct qc__plan {
     qc__task *task;
     qc__step *step;
     int32_t *top;
-    int64_t *update; /* nsuper: offset of the update matrix in its area                             */
-    bool *shared;    /* nsuper: which area                                                          */
-    int64_t stack, area; /* entries of one worker's stack and of the shared area                    */
-    int64_t work; /* doubles which qc__front_factor needs at most                                   */
+    int64_t *update; /* nsuper: offset of the update matrix in its area */
+    bool *shared; /* nsuper: which area                                                          */
+    int64_t stack, area; /* entries of one worker's stack and of the shared area */
+    int64_t work;        /* doubles which qc__front_factor needs at most        */
     int32_t largest_front, largest_width;
     bool uses_blas;
     double flops;
@@ -48,19 +48,19 @@ typedef struct qc__plan {
 struct qc_symbolic {
     atomic_int references;
     int32_t n, nsuper;
-    int32_t *perm, *inverse; /* perm[k] = caller's row eliminated k-th                              */
-    int32_t *super;          /* nsuper + 1: first column                                            */
-    int32_t *super_of;       /* n: supernode of a column                                            */
-    int32_t *parent;         /* nsuper: -1 for roots; children come before parents                  */
-    int32_t *child, *sibling; /* nsuper: first child, next sibling, ascending; -1 ends              */
-    int64_t *rowptr;         /* nsuper + 1 into rows                                                */
-    int32_t *rows;           /* permuted rows of a supernode, ascending, its own columns first      */
-    int32_t *relative;       /* parallel to rows: local row in the parent's list (own columns: -1)  */
-    int64_t *panel;          /* nsuper + 1: offset of the r x w column-major panel                  */
-    int64_t *a_colptr;       /* the analysed pattern of A, the caller's numbering                   */
+    int32_t *perm, *inverse; /* perm[k] = caller's row eliminated k-th */
+    int32_t *super;    /* nsuper + 1: first column                                            */
+    int32_t *super_of; /* n: supernode of a column                                            */
+    int32_t *parent;   /* nsuper: -1 for roots; children come before parents                  */
+    int32_t *child, *sibling; /* nsuper: first child, next sibling, ascending; -1 ends */
+    int64_t *rowptr;   /* nsuper + 1 into rows                                                */
+    int32_t *rows;     /* permuted rows of a supernode, ascending, its own columns first      */
+    int32_t *relative; /* parallel to rows: local row in the parent's list (own columns: -1)  */
+    int64_t *panel;    /* nsuper + 1: offset of the r x w column-major panel                  */
+    int64_t *a_colptr; /* the analysed pattern of A, the caller's numbering                   */
     int32_t *a_row;
-    int64_t *entry;          /* nsuper + 1 into from / to: entries of A by supernode                */
-    int64_t *from, *to;      /* position in A; offset in the panel, ~offset when conjugated         */
+    int64_t *entry;     /* nsuper + 1 into from / to: entries of A by supernode                */
+    int64_t *from, *to; /* position in A; offset in the panel, ~offset when conjugated         */
     qc__plan plan;
     int64_t nnz_l;
     double flops;
@@ -68,14 +68,14 @@ struct qc_symbolic {
 
 struct qc_factor {
     qc_symbolic *S;
-    int32_t components; /* 1 real, 2 complex                                                        */
+    int32_t components; /* 1 real, 2 complex */
     bool usable;
-    double *values; /* panels: unit lower triangle, the strict upper part is undefined              */
-    double *D;      /* n pivots, permuted                                                           */
-    double *diagonal; /* n: diagonal of A, permuted: the scale of each pivot                        */
-    double *journal;  /* updown: old columns, for roll back; grows                                  */
+    double *values; /* panels: unit lower triangle, the strict upper part is undefined */
+    double *D; /* n pivots, permuted                                                           */
+    double *diagonal; /* n: diagonal of A, permuted: the scale of each pivot */
+    double *journal;  /* updown: old columns, for roll back; grows  */
     int32_t *journal_column;
-    int64_t journal_size, journal_columns; /* capacities                                            */
+    int64_t journal_size, journal_columns; /* capacities */
 };
 
 #define QC__EPS 2.220446049250313e-16
@@ -105,8 +105,8 @@ void qc__postorder(int32_t n, const int32_t *parent, int32_t *post, int32_t *wor
 /* column_counts.c; lower: strictly lower triangle by columns, postordered; work: 4 n */
 void qc__column_counts(qc__pattern lower, const int32_t *parent, int32_t *count, int32_t *work);
 
-/* supernodes.c: fills nsuper, super, super_of, parent, child, sibling, rowptr, panel of S and changes
- * S->perm, S->inverse to the final order. parent, count: of the columns, postordered. */
+/* supernodes.c: fills nsuper, super, super_of, parent, child, sibling, rowptr, panel of S and
+ * changes S->perm, S->inverse to the final order. parent, count: of the columns, postordered. */
 qc_status qc__supernodes(qc_ctx *ctx, qc_symbolic *S, const int32_t *parent, const int32_t *count);
 
 /* plan.c */

@@ -1,5 +1,6 @@
 /* The inner loops of small fronts: several columns times several multipliers, subtracted. Complex
- * callers pass each column twice, as x and i x, which makes the loop the same as for real numbers. */
+ * callers pass each column twice, as x and i x, which makes the loop the same as for real numbers.
+ */
 #include "sdk/sparse/internal.h"
 
 static void subtract4x4(int64_t n, const double *X, int64_t ldx, const double *c, double *y,
@@ -34,7 +35,8 @@ void qc__subtract4(int64_t n, int64_t K, const double *X, int64_t ldx, const dou
     double local[16];
     int64_t k = 0;
     for (; k + 4 <= K; k += 4) {
-        for (int q = 0; q < 16; q++) local[q] = c[k * 4 + q]; /* no alias with y: stays in registers */
+        for (int q = 0; q < 16; q++)
+            local[q] = c[k * 4 + q]; /* no alias with y: stays in registers */
         subtract4x4(n, X + k * ldx, ldx, local, y, ldy);
     }
     for (; k < K; k++) {
@@ -50,8 +52,7 @@ void qc__subtract1(int64_t n, int64_t K, const double *X, int64_t ldx, const dou
         const double *restrict x0 = X + k * ldx, *restrict x1 = x0 + ldx, *restrict x2 = x1 + ldx,
                                *restrict x3 = x2 + ldx;
         const double c0 = c[k], c1 = c[k + 1], c2 = c[k + 2], c3 = c[k + 3];
-        for (int64_t i = 0; i < n; i++)
-            out[i] -= x0[i] * c0 + x1[i] * c1 + x2[i] * c2 + x3[i] * c3;
+        for (int64_t i = 0; i < n; i++) out[i] -= x0[i] * c0 + x1[i] * c1 + x2[i] * c2 + x3[i] * c3;
     }
     for (; k < K; k++) {
         const double *restrict x = X + k * ldx;

@@ -1,5 +1,5 @@
-/* Rounding to a lattice: integers z with small 1/2 (z - t)^T P (z - t) (thesis 6.3), from a start of
- * nearest integers or of greedy fixing, improved by local search. */
+/* Rounding to a lattice: integers z with small 1/2 (z - t)^T P (z - t) (thesis 6.3), from a start
+ * of nearest integers or of greedy fixing, improved by local search. */
 #include "sdk/sparse/internal.h"
 #include <cblas.h>
 #include <lapacke.h>
@@ -26,8 +26,7 @@ static qc_status check(qc_ctx *ctx, int32_t n, const double *P, const double *t,
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "rounding radius %d is not in 0..3",
                         (int)options->radius);
     if (options->start != QC_ROUND_DIRECT && options->start != QC_ROUND_GREEDY)
-        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "unknown rounding start %d",
-                        (int)options->start);
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "unknown rounding start %d", (int)options->start);
     for (int32_t i = 0; i < n; i++)
         if (!isfinite(t[i]))
             return qc__fail(ctx, QC_ERR_ARGUMENT, i, "rounding target %d is not finite", (int)i);
@@ -71,7 +70,7 @@ static qc_status round_lattice(qc_ctx *ctx, qc__lattice *Q, const qc_lattice_opt
         qc__range_end(ctx, outer);
     }
     if (status == QC_OK)
-        *result = (qc_lattice_result){ qc__lattice_gradient(Q), direct, Q->moves, Q->evaluations };
+        *result = (qc_lattice_result){qc__lattice_gradient(Q), direct, Q->moves, Q->evaluations};
     return status;
 }
 
@@ -79,16 +78,16 @@ qc_status qc_lattice_round(qc_ctx *ctx, int32_t n, const double *P, const double
                            const qc_lattice_options *options, double *z,
                            qc_lattice_result *result) {
     const qc_lattice_options defaults = QC_LATTICE_OPTIONS_INIT;
-    qc_lattice_result found = { 0, 0, 0, 0 };
+    qc_lattice_result found = {0, 0, 0, 0};
     if (!options) options = &defaults;
     qc_status status = check(ctx, n, P, t, options, z);
     if (status != QC_OK) return status;
-    double *C = QC__NEW(ctx, double, (size_t)n * (size_t)n);
+    double *C = QC__NEW(ctx, double, (size_t)n *(size_t)n);
     double *vectors = QC__NEW(ctx, double, 2 * (size_t)n);
     if (!C || !vectors) {
         status = QC_ERR_NOMEM;
     } else if (n > 0) {
-        qc__lattice Q = { n, P, t, vectors, vectors + n, 0, 0 };
+        qc__lattice Q = {n, P, t, vectors, vectors + n, 0, 0};
         status = round_lattice(ctx, &Q, options, C, &found);
         if (status == QC_OK) memcpy(z, Q.z, (size_t)n * sizeof *z);
     }

@@ -1,9 +1,9 @@
-/* Greedy rounding as in mixed-integer quadrangulation (Bommes, Zimmer, Kobbelt 2009): fix the variable
- * which costs least, let the others relax, repeat. With Q = (P on the free variables)^{-1} and their
- * relaxed values x, fixing x_i to an integer z_i
- *     costs (z_i - x_i)^2 / (2 Q_ii), moves x_j by Q_ji / Q_ii (z_i - x_i), and Q <- Q - q_i q_i^T / Q_ii,
- * which is Cholesky elimination of P^{-1} in the order of the choices. The rank-1 changes are
- * collected in V and applied to Q in blocks. */
+/* Greedy rounding as in mixed-integer quadrangulation (Bommes, Zimmer, Kobbelt 2009): fix the
+ * variable which costs least, let the others relax, repeat. With Q = (P on the free variables)^{-1}
+ * and their relaxed values x, fixing x_i to an integer z_i costs (z_i - x_i)^2 / (2 Q_ii), moves
+ * x_j by Q_ji / Q_ii (z_i - x_i), and Q <- Q - q_i q_i^T / Q_ii, which is Cholesky elimination of
+ * P^{-1} in the order of the choices. The rank-1 changes are collected in V and applied to Q in
+ * blocks. */
 #include "sdk/sparse/internal.h"
 #include <cblas.h>
 #include <math.h>
@@ -74,7 +74,7 @@ qc_status qc__lattice_greedy(qc_ctx *ctx, qc__lattice *L, double *inverse) {
     bool *fixed = QC__ZERO(ctx, bool, n);
     qc_status status = QC_ERR_NOMEM;
     if (work && fixed) {
-        greedy G = { n, inverse, work, work + n * BLOCK, L->z, fixed, 0 };
+        greedy G = {n, inverse, work, work + n * BLOCK, L->z, fixed, 0};
         memcpy(G.x, L->t, (size_t)n * sizeof *G.x);
         for (int64_t i = 0; i < n; i++) G.diagonal[i] = inverse[i + i * n];
         status = QC_OK;

@@ -1,11 +1,11 @@
 /* Local search in the lattice (thesis 6.3.1): change up to three entries of z by +-1 as long as the
  * energy falls. With g = P (z - t), a step s changes the energy by s.g + 1/2 s^T P s; with
  *     a_i(s) = P_ii / 2 + s g_i,   c_ij = s_i s_j P_ij
- * a pair changes it by a_i + a_j + c_ij and a triple by the three a and the three c. The best sign of
- * one more entry k is known: its part is P_kk / 2 - |g_k + s_i P_ik + s_j P_jk|.
- * Pruning: a triple can only gain if the sum of its -c exceeds the sum of its a, which is the sum
- * over its three pairs of (a_i + a_j) / 2. Hence one pair has -c_ij > (a_i + a_j) / 2, and only such
- * pairs are extended; nothing is missed. */
+ * a pair changes it by a_i + a_j + c_ij and a triple by the three a and the three c. The best sign
+ * of one more entry k is known: its part is P_kk / 2 - |g_k + s_i P_ik + s_j P_jk|. Pruning: a
+ * triple can only gain if the sum of its -c exceeds the sum of its a, which is the sum over its
+ * three pairs of (a_i + a_j) / 2. Hence one pair has -c_ij > (a_i + a_j) / 2, and only such pairs
+ * are extended; nothing is missed. */
 #include "sdk/sparse/internal.h"
 #include <math.h>
 
@@ -26,7 +26,9 @@ static void move(search *W, int64_t i, double sign) {
     for (int64_t k = 0; k < n; k++) W->Q->g[k] += sign * column[k];
 }
 
-static double against(double slope) { return slope > 0 ? -1.0 : 1.0; }
+static double against(double slope) {
+    return slope > 0 ? -1.0 : 1.0;
+}
 
 static bool improve_one(search *W) {
     const qc__lattice *Q = W->Q;
@@ -137,7 +139,7 @@ static qc_status scan(qc_ctx *ctx, search *W, bool improve(search *, int64_t), i
 
 /* Until no step of up to `radius` entries gains; smaller steps are exhausted first. */
 static qc_status descend(qc_ctx *ctx, search *W, int32_t radius, bool *moved) {
-    int64_t start[2] = { 0, 0 };
+    int64_t start[2] = {0, 0};
     bool found = true;
     *moved = false;
     while (found) {
@@ -160,7 +162,7 @@ qc_status qc__lattice_search(qc_ctx *ctx, qc__lattice *Q, int32_t radius) {
     if (radius == 0) return QC_OK;
     double *work = QC__NEW(ctx, double, 2 * n);
     if (!work) return QC_ERR_NOMEM;
-    search W = { Q, work, work + n, 0 };
+    search W = {Q, work, work + n, 0};
     for (int64_t i = 0; i < n; i++) W.half[i] = (0.5 + least_gain) * Q->P[i + i * n];
     qc_status status = QC_OK;
     /* the optimum counts when a freshly computed gradient confirms it */

@@ -7,12 +7,12 @@
 typedef struct run {
     const qc_symbolic *S;
     qc_factor *F;
-    const double *val; /* in the order of the analysed pattern */
-    double *area;      /* shared update matrices */
+    const double *val;      /* in the order of the analysed pattern */
+    double *area;           /* shared update matrices */
     double **stack, **work; /* by worker */
     double **floor;         /* by worker */
-    int32_t *failed;   /* by task: permuted column, or -1 */
-    int32_t task;      /* first task of the present step */
+    int32_t *failed;        /* by task: permuted column, or -1 */
+    int32_t task;           /* first task of the present step */
 } run;
 
 /* Panel <- entries of A, diagonal; the update matrix <- 0. */
@@ -72,8 +72,8 @@ static int32_t factor_supernode(const run *R, int32_t s, uint32_t worker) {
     load(R, s, panel, U, R->floor[worker]);
     for (int32_t c = S->child[s]; c != -1; c = S->sibling[c])
         extend_add(S, c, update_of(R, c, worker), r, w, panel, U);
-    const int32_t bad = NAME(qc__front_factor)(r, w, panel, U, R->F->D + first, R->floor[worker],
-                                               R->work[worker]);
+    const int32_t bad =
+        NAME(qc__front_factor)(r, w, panel, U, R->F->D + first, R->floor[worker], R->work[worker]);
     return bad < 0 ? -1 : first + bad;
 }
 
@@ -151,7 +151,7 @@ static qc_status factor_values(qc_ctx *ctx, qc_factor *F, const double *val) {
     const qc__plan *plan = &F->S->plan;
     const uint32_t threads = qc_ctx_threads(ctx);
     const uint32_t workers = plan->ntask > 1 ? threads : 1;
-    run R = { F->S, F, val, NULL, NULL, NULL, NULL, NULL, 0 };
+    run R = {F->S, F, val, NULL, NULL, NULL, NULL, NULL, 0};
     double **pointers = QC__ZERO(ctx, double *, 3 * (size_t)workers);
     if (!pointers) return QC_ERR_NOMEM;
     qc_status status = QC_ERR_NOMEM;
@@ -174,7 +174,7 @@ static bool same_pattern(const qc_symbolic *S, const matrix *A) {
 
 /* Values of a matrix with fewer entries in the order of the analysed pattern. */
 static qc_status expand(qc_ctx *ctx, const qc_symbolic *S, const matrix *A, double *val) {
-    const qc_status status = qc__check_pattern(ctx, (qc__pattern){ A->n, A->colptr, A->row });
+    const qc_status status = qc__check_pattern(ctx, (qc__pattern){A->n, A->colptr, A->row});
     if (status != QC_OK) return status;
     memset(val, 0, (size_t)(NC * S->a_colptr[S->n]) * sizeof *val);
     for (int32_t j = 0; j < S->n; j++) {
@@ -212,8 +212,10 @@ qc_status NAME(qc_factorize)(qc_ctx *ctx, const qc_symbolic *S, const matrix *A,
     qc_status status = qc__factor_create(ctx, S, NC, &F);
     if (status != QC_OK) return status;
     status = factor_matrix(ctx, F, A);
-    if (status == QC_OK) *out = F;
-    else qc_factor_free(F);
+    if (status == QC_OK)
+        *out = F;
+    else
+        qc_factor_free(F);
     return status;
 }
 

@@ -61,7 +61,8 @@ static qc_status order_given(qc_ctx *ctx, int32_t n, const int32_t *given, int32
 qc_status qc__order(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *options, int32_t *perm) {
     const int32_t ordering = options ? options->ordering : QC_ORDER_AMD;
     switch (ordering) {
-    case QC_ORDER_GIVEN: return order_given(ctx, A.n, options->permutation, perm);
+    case QC_ORDER_GIVEN:
+        return order_given(ctx, A.n, options->permutation, perm);
     case QC_ORDER_NATURAL:
         for (int32_t k = 0; k < A.n; k++) perm[k] = k;
         return QC_OK;

@@ -5,7 +5,9 @@
 /* A step is about this many real flops (complex: four times), so that progress is felt. */
 static const double step_flops = 2.5e8;
 
-static int32_t width_of(const qc_symbolic *S, int32_t s) { return S->super[s + 1] - S->super[s]; }
+static int32_t width_of(const qc_symbolic *S, int32_t s) {
+    return S->super[s + 1] - S->super[s];
+}
 static int32_t rows_of(const qc_symbolic *S, int32_t s) {
     return (int32_t)(S->rowptr[s + 1] - S->rowptr[s]);
 }
@@ -50,7 +52,7 @@ static void cut_tree(const qc_symbolic *S, const double *cost, const int32_t *fi
     double task_cost = 0;
     int32_t ntop = 0, end = -1; /* end: one after the last task */
     if (S->nsuper == 0) return;
-    *step = (qc__step){ 0, 0, 0, 0, 0 };
+    *step = (qc__step){0, 0, 0, 0, 0};
     plan->nstep = 1;
     for (int32_t s = 0; s < S->nsuper; s++) {
         const int32_t p = S->parent[s];
@@ -59,13 +61,13 @@ static void cut_tree(const qc_symbolic *S, const double *cost, const int32_t *fi
             const bool joins = end == first[s] && task_cost + cost[s] <= limit;
             if (!joins && (step->flops > 4 * step_flops || step->top_end > step->top + 15)) {
                 step = &plan->step[plan->nstep++];
-                *step = (qc__step){ plan->ntask, plan->ntask, ntop, ntop, 0 };
+                *step = (qc__step){plan->ntask, plan->ntask, ntop, ntop, 0};
             }
             if (joins) {
                 plan->task[plan->ntask - 1].last = s;
                 task_cost += cost[s];
             } else {
-                plan->task[plan->ntask++] = (qc__task){ first[s], s };
+                plan->task[plan->ntask++] = (qc__task){first[s], s};
                 task_cost = cost[s];
                 step->task_end = plan->ntask;
             }
@@ -83,7 +85,7 @@ static void cut_tree(const qc_symbolic *S, const double *cost, const int32_t *fi
  * children are on top of one while their parent pushes on the other. Returns the space needed. */
 static int64_t place_on_stacks(const qc_symbolic *S, qc__task task, const int32_t *depth,
                                qc__plan *plan) {
-    int64_t top[2] = { 0, 0 }, peak[2] = { 0, 0 };
+    int64_t top[2] = {0, 0}, peak[2] = {0, 0};
     for (int32_t s = task.first; s <= task.last; s++) {
         const int parity = depth[s] & 1;
         for (int32_t c = S->child[s]; c != -1; c = S->sibling[c]) top[!parity] -= update_size(S, c);
@@ -177,9 +179,8 @@ qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S) {
         if (limit < 1e6) limit = 1e6; /* smaller pieces would cost more than they gain */
         if (limit > step_flops) limit = step_flops;
         cut_tree(S, cost, first, limit, plan);
-        for (int32_t s = ns; s-- > 0;)
-            depth[s] = S->parent[s] == -1 ? 0 : depth[S->parent[s]] + 1;
-        live_list list = { live, 0 };
+        for (int32_t s = ns; s-- > 0;) depth[s] = S->parent[s] == -1 ? 0 : depth[S->parent[s]] + 1;
+        live_list list = {live, 0};
         place_updates(S, plan, depth, &list);
         measure(S, plan);
         status = QC_OK;

@@ -3,7 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-static double modulus(qc_complex z) { return hypot(z.re, z.im); }
+static double modulus(qc_complex z) {
+    return hypot(z.re, z.im);
+}
 
 static void subtract(qc_complex *y, qc_complex a, qc_complex x, double sign) {
     const double im = sign * a.im;
@@ -19,7 +21,7 @@ static void residual_vector(const qc_hermitian *A, const qc_complex *b, const qc
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             const int32_t i = A->row[p];
             if (i == j) {
-                subtract(&r[j], (qc_complex){ A->val[p].re, 0 }, x[j], 1);
+                subtract(&r[j], (qc_complex){A->val[p].re, 0}, x[j], 1);
             } else {
                 subtract(&r[i], A->val[p], x[j], 1);
                 subtract(&r[j], A->val[p], x[i], -1);
@@ -60,8 +62,7 @@ qc_status qc_solve_refined(qc_ctx *ctx, const qc_factor *F, const qc_hermitian *
     if (status != QC_OK) goto done;
     if (residual) {
         residual_vector(A, x, solution, r);
-        const double scale =
-            largest(A->val, A->colptr[n]) * largest(solution, n) + largest(x, n);
+        const double scale = largest(A->val, A->colptr[n]) * largest(solution, n) + largest(x, n);
         *residual = scale > 0 ? largest(r, n) / scale : 0;
     }
     if (n > 0) memcpy(x, solution, (size_t)n * sizeof *x);

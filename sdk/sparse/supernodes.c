@@ -15,12 +15,12 @@ static int64_t trapezoid(int64_t width, int64_t rows) {
 }
 
 /* parent(j) = j + 1 and equal structure: j belongs to the supernode of j + 1. */
-static int32_t find_groups(int32_t n, const int32_t *parent, const int32_t *count, int32_t *group_of,
-                           group *g) {
+static int32_t find_groups(int32_t n, const int32_t *parent, const int32_t *count,
+                           int32_t *group_of, group *g) {
     int32_t ng = 0;
     for (int32_t j = 0; j < n; j++) {
         const bool joins = j > 0 && parent[j - 1] == j && count[j - 1] == count[j] + 1;
-        if (!joins) g[ng++] = (group){ 0, count[j], -1, -1, 0 };
+        if (!joins) g[ng++] = (group){0, count[j], -1, -1, 0};
         g[ng - 1].width++;
         g[ng - 1].entries += count[j];
         group_of[j] = ng - 1;
@@ -55,8 +55,9 @@ static void amalgamate(int32_t ng, group *g) {
     }
 }
 
-/* Columns by supernode, supernodes in postorder: fills S->super, super_of, parent, rowptr, panel and
- * newest[column] = its final number. post: place[k] = k-th group; number: group -> supernode. */
+/* Columns by supernode, supernodes in postorder: fills S->super, super_of, parent, rowptr, panel
+ * and newest[column] = its final number. post: place[k] = k-th group; number: group -> supernode.
+ */
 static void number_columns(qc_symbolic *S, int32_t ng, const group *g, const int32_t *post,
                            int32_t *number, const int32_t *group_of, int32_t *newest) {
     int32_t ns = 0;

@@ -1,6 +1,6 @@
 /* Triangular solves with the supernodal factor. Right-hand sides travel in blocks of one or eight;
- * inside a block, row i holds the real parts and then the imaginary parts of all its columns, so that
- * every entry of L is read once per block. Compiled twice, see scalar.h. */
+ * inside a block, row i holds the real parts and then the imaginary parts of all its columns, so
+ * that every entry of L is read once per block. Compiled twice, see scalar.h. */
 #include "sdk/sparse/scalar.h"
 #include <math.h>
 #include <string.h>
@@ -49,7 +49,7 @@ static inline void forward_supernode(const int nb, const qc_factor *F, int32_t s
 /* y -= sum_i conj(l_i) x_i over n rows. Backward, as the supernodes go: one stream from memory. */
 static inline void subtract_dot(const int nb, int64_t n, const double *l, const double *x,
                                 double *y) {
-    double sum[NC * BLOCK] = { 0 };
+    double sum[NC * BLOCK] = {0};
     for (int64_t i = n; i-- > 0;) subtract(nb, l + NC * i, -1, x + NC * nb * i, sum);
     for (int c = 0; c < NC * nb; c++) y[c] += sum[c];
 }
@@ -57,7 +57,7 @@ static inline void subtract_dot(const int nb, int64_t n, const double *l, const 
 /* The same for four columns of L and one right-hand side: the sums do not wait for each other. */
 static void subtract_four_dots(int64_t n, const double *L, int64_t ld, const double *x, double *y) {
     const double *l0 = L, *l1 = l0 + NC * ld, *l2 = l1 + NC * ld, *l3 = l2 + NC * ld;
-    double a0[2] = { 0, 0 }, a1[2] = { 0, 0 }, a2[2] = { 0, 0 }, a3[2] = { 0, 0 };
+    double a0[2] = {0, 0}, a1[2] = {0, 0}, a2[2] = {0, 0}, a3[2] = {0, 0};
     for (int64_t i = NC * (n - 1); i >= 0; i -= NC) {
         subtract(1, l0 + i, -1, x + i, a0);
         subtract(1, l1 + i, -1, x + i, a1);
@@ -85,7 +85,8 @@ static inline void backward_supernode(const int nb, const qc_factor *F, int32_t 
     for (int64_t end = w; end > 0;) {
         const int64_t begin = end >= 4 ? end - 4 : 0;
         if (nb == 1 && end - begin == 4) {
-            subtract_four_dots(r - end, L + NC * (end + begin * r), r, t + row * end, t + row * begin);
+            subtract_four_dots(r - end, L + NC * (end + begin * r), r, t + row * end,
+                               t + row * begin);
         } else {
             for (int64_t k = end; k-- > begin;)
                 subtract_dot(nb, r - end, L + NC * (end + k * r), t + row * end, t + row * k);
@@ -137,12 +138,15 @@ static void run_blocks(void *arg, int64_t begin, int64_t end, uint32_t worker) {
         const int64_t columns = left < BLOCK ? left : BLOCK;
         const int64_t nb = columns == 1 ? 1 : BLOCK;
         double *Y = R->work[worker], *t = Y + NC * nb * R->F->S->n;
-        if (nb == 1) solve_block(1, R, column, columns, Y, t);
-        else solve_block(BLOCK, R, column, columns, Y, t);
+        if (nb == 1)
+            solve_block(1, R, column, columns, Y, t);
+        else
+            solve_block(BLOCK, R, column, columns, Y, t);
     }
 }
 
-static qc_status solve(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, scalar *x, bool forward_only) {
+static qc_status solve(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, scalar *x,
+                       bool forward_only) {
     qc_status status = qc__factor_check(ctx, F, NC, true);
     if (status != QC_OK) return status;
     if (nrhs < 0 || (nrhs > 0 && F->S->n > 0 && !x))
@@ -150,10 +154,10 @@ static qc_status solve(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, scalar *x,
     if (nrhs == 0 || F->S->n == 0) return QC_OK;
     const int64_t blocks = (nrhs + BLOCK - 1) / BLOCK, nb = nrhs == 1 ? 1 : BLOCK;
     const int64_t threads = qc_ctx_threads(ctx), workers = blocks < threads ? blocks : threads;
-    run R = { F, forward_only, nrhs, 0, (double *)x, QC__ZERO(ctx, double *, threads) };
+    run R = {F, forward_only, nrhs, 0, (double *)x, QC__ZERO(ctx, double *, threads)};
     if (!R.work) return QC_ERR_NOMEM;
     for (int64_t t = 0; t < workers && status == QC_OK; t++) {
-        R.work[t] = QC__NEW(ctx, double, NC * nb * ((int64_t)F->S->n + F->S->plan.largest_front));
+        R.work[t] = QC__NEW(ctx, double, NC *nb *((int64_t)F->S->n + F->S->plan.largest_front));
         if (!R.work[t]) status = QC_ERR_NOMEM;
     }
     for (; R.first_block < blocks && status == QC_OK; R.first_block += workers) {
@@ -187,7 +191,7 @@ qc_status qc_solve_forward_sparse(qc_ctx *ctx, const qc_factor *F, int32_t nb, c
             return qc__fail(ctx, QC_ERR_ARGUMENT, row[p], "right-hand side has row %d of %d",
                             (int)row[p], (int)S->n);
     bool *reached = QC__ZERO(ctx, bool, S->nsuper);
-    double *t = QC__NEW(ctx, double, NC * (int64_t)S->plan.largest_front);
+    double *t = QC__NEW(ctx, double, NC *(int64_t)S->plan.largest_front);
     if (!reached || !t) {
         qc__free(reached);
         qc__free(t);

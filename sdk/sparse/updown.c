@@ -1,10 +1,9 @@
-/* A <- A + sum sigma_q w_q w_q^H for one or two vectors with the same pattern, on the path from their
- * first row to the root. One column step of A + a w w^H with p = w_j (Gill, Golub, Murray, Saunders
- * 1974, method C1, in Hermitian form):
- *     d' = d + a |p|^2,  b = a conj(p) / d',  w_i <- w_i - p l_i,  l_i <- l_i + b w_i,  a <- a d / d'.
- * Both vectors of a flip are swept together, the second seeing the column left by the first. Old
- * columns go to a journal, from which a failed call restores the factor bit for bit. Compiled twice,
- * see scalar.h. */
+/* A <- A + sum sigma_q w_q w_q^H for one or two vectors with the same pattern, on the path from
+ * their first row to the root. One column step of A + a w w^H with p = w_j (Gill, Golub, Murray,
+ * Saunders 1974, method C1, in Hermitian form): d' = d + a |p|^2,  b = a conj(p) / d',  w_i <- w_i
+ * - p l_i,  l_i <- l_i + b w_i,  a <- a d / d'. Both vectors of a flip are swept together, the
+ * second seeing the column left by the first. Old columns go to a journal, from which a failed call
+ * restores the factor bit for bit. Compiled twice, see scalar.h. */
 #include "sdk/sparse/scalar.h"
 #include <math.h>
 #include <string.h>
@@ -15,7 +14,8 @@ typedef struct sweep {
     qc_factor *F;
     int vectors;
     double a[2];
-    double *v[2]; /* the vectors on the rows of the present supernode, then of its parent */
+    double negligible; /* entries of v below this are taken as zero */
+    double *v[2];      /* the vectors on the rows of the present supernode, then of its parent */
     double *next[2];
     int64_t used;    /* doubles in the journal */
     int32_t columns; /* in the journal */
@@ -87,7 +87,7 @@ static void column_step2(int64_t n, double p[2][2], double b[2][2], double *rest
 
 /* One column; x: its entries from the diagonal on (n of them below). False: the pivot fails. */
 static bool update_column(sweep *W, int32_t column, double floor, double *x, int64_t k, int64_t n) {
-    double p[2][2] = { { 0, 0 }, { 0, 0 } }, b[2][2] = { { 0, 0 }, { 0, 0 } };
+    double p[2][2] = {{0, 0}, {0, 0}}, b[2][2] = {{0, 0}, {0, 0}};
     bool any = false;
     for (int q = 0; q < W->vectors; q++)
         for (int c = 0; c < NC; c++) any |= (p[q][c] = W->v[q][NC * k + c]) != 0;
@@ -114,21 +114,30 @@ static bool update_column(sweep *W, int32_t column, double floor, double *x, int
     return true;
 }
 
-/* Hands the vectors on to the rows of the parent. */
-static void pass_up(sweep *W, int32_t s) {
+/* Hands the vectors on to the rows of the parent. Entries far below rounding become zero: their
+ * columns are left alone, and no arithmetic on subnormal numbers slows the sweep down. Returns
+ * false when nothing is left. */
+static bool pass_up(sweep *W, int32_t s) {
     const qc_symbolic *S = W->F->S;
     const int32_t parent = S->parent[s], w = S->super[s + 1] - S->super[s];
     const int32_t *local = S->relative + S->rowptr[s];
     const int64_t r = S->rowptr[s + 1] - S->rowptr[s];
     const int64_t rp = S->rowptr[parent + 1] - S->rowptr[parent];
+    bool any = false;
     for (int q = 0; q < W->vectors; q++) {
         double *from = W->v[q], *to = W->next[q];
         memset(to, 0, (size_t)(NC * rp) * sizeof *to);
         for (int64_t i = w; i < r; i++)
-            for (int c = 0; c < NC; c++) to[NC * (int64_t)local[i] + c] = from[NC * i + c];
+            for (int c = 0; c < NC; c++) {
+                const double x = from[NC * i + c];
+                if (fabs(x) <= W->negligible) continue;
+                to[NC * (int64_t)local[i] + c] = x;
+                any = true;
+            }
         W->v[q] = to;
         W->next[q] = from;
     }
+    return any;
 }
 
 /* Returns the permuted column which failed, or -1. */
@@ -148,7 +157,7 @@ static int32_t sweep_path(sweep *W, int32_t s, int32_t first_column, const doubl
             if (!update_column(W, column, qc__pivot_floor(S->n, diagonal), x, k, r - k - 1))
                 return column;
         }
-        if (S->parent[s] != -1) pass_up(W, s);
+        if (S->parent[s] != -1 && !pass_up(W, s)) break;
     }
     return -1;
 }
@@ -158,8 +167,10 @@ static int64_t find_row(const qc_symbolic *S, int32_t s, int32_t row) {
     int64_t lo = S->rowptr[s], hi = S->rowptr[s + 1];
     while (hi - lo > 1) {
         const int64_t middle = lo + (hi - lo) / 2;
-        if (S->rows[middle] <= row) lo = middle;
-        else hi = middle;
+        if (S->rows[middle] <= row)
+            lo = middle;
+        else
+            hi = middle;
     }
     return S->rows[lo] == row ? lo - S->rowptr[s] : -1;
 }
@@ -213,7 +224,9 @@ static qc_status update(qc_ctx *ctx, qc_factor *F, int vectors, const double *si
     if (status != QC_OK) return status;
     double *work = QC__NEW(ctx, double, 2 * vectors * front);
     if (!work) return QC_ERR_NOMEM;
-    sweep W = { F, vectors, { 0, 0 }, { work, work }, { work, work }, 0, 0 };
+    sweep W = {F, vectors, {0, 0}, 0, {work, work}, {work, work}, 0, 0};
+    for (int64_t i = 0; i < NC * (int64_t)vectors * nw; i++)
+        W.negligible = fmax(W.negligible, 1e-80 * fabs(w[i]));
     for (int q = 0; q < vectors; q++) {
         W.a[q] = sigma[q];
         W.v[q] = work + 2 * q * front;
@@ -267,15 +280,15 @@ qc_status qc_flip(qc_ctx *ctx, qc_factor *F, int32_t k, int32_t l, qc_complex dl
     if (status != QC_OK) return status;
     if (k == l || k == m)
         return qc__fail(ctx, QC_ERR_ARGUMENT, k, "flip couples row %d with itself", (int)k);
-    int32_t rows[MOST_ROWS] = { k, l, m }, nw = 3;
+    int32_t rows[MOST_ROWS] = {k, l, m}, nw = 3;
     if (l == m) {
-        dl = (qc_complex){ dl.re + dm.re, dl.im + dm.im };
-        dm = (qc_complex){ 0, 0 };
+        dl = (qc_complex){dl.re + dm.re, dl.im + dm.im};
+        dm = (qc_complex){0, 0};
         nw = 2;
     }
     const double c = hypot(hypot(dl.re, dl.im), hypot(dm.re, dm.im));
     if (c == 0) return QC_OK;
-    const double sigma[2] = { 1, -1 }, scale = 1 / sqrt(2 * c);
+    const double sigma[2] = {1, -1}, scale = 1 / sqrt(2 * c);
     double w[4 * MOST_ROWS];
     for (int q = 0; q < 2; q++) {
         double *x = w + 2 * (int64_t)q * nw;

@@ -6,8 +6,7 @@ static int64_t dense_count(const test_matrix *M, const qc_symbolic *S, double *f
     const int64_t n = M->n;
     cplx *A = dense_of(M, false);
     bool *B = calloc((size_t)(n * n) + 1, sizeof *B);
-    for (int64_t i = 0; i < n * n; i++)
-        B[S->inverse[i % n] + S->inverse[i / n] * n] = A[i] != 0;
+    for (int64_t i = 0; i < n * n; i++) B[S->inverse[i % n] + S->inverse[i / n] * n] = A[i] != 0;
     int64_t total = 0;
     *flops = 0;
     for (int64_t k = 0; k < n; k++) {
@@ -41,13 +40,16 @@ static void check_structure(const qc_symbolic *S) {
         assert_true(w >= 1 && r >= w);
         for (int64_t i = 0; i < r; i++) {
             assert_true(i == 0 || rows[i] > rows[i - 1]);
-            if (i < w) assert_int_equal(rows[i], S->super[s] + i);
+            if (i < w)
+                assert_int_equal(rows[i], S->super[s] + i);
             else
                 assert_int_equal(S->rows[S->rowptr[S->parent[s]] + S->relative[S->rowptr[s] + i]],
                                  rows[i]);
         }
-        if (r > w) assert_int_equal(S->parent[s], S->super_of[rows[w]]);
-        else assert_int_equal(S->parent[s], -1);
+        if (r > w)
+            assert_int_equal(S->parent[s], S->super_of[rows[w]]);
+        else
+            assert_int_equal(S->parent[s], -1);
     }
 }
 
@@ -99,9 +101,9 @@ static void given_order_is_kept_up_to_equivalence(void **state) {
 static void bad_input_is_named(void **state) {
     (void)state;
     qc_ctx *ctx = new_ctx(1);
-    const int64_t colptr[] = { 0, 1, 3, 5 };
-    int32_t row[] = { 0, 0, 1, 1, 2 };
-    qc_hermitian A = { 3, colptr, row, NULL };
+    const int64_t colptr[] = {0, 1, 3, 5};
+    int32_t row[] = {0, 0, 1, 1, 2};
+    qc_hermitian A = {3, colptr, row, NULL};
     qc_symbolic *S = NULL, *const untouched = (qc_symbolic *)(void *)&S;
     assert_int_equal(qc_analyze(ctx, &A, NULL, &S), QC_OK);
     qc_symbolic_free(S);
@@ -115,7 +117,7 @@ static void bad_input_is_named(void **state) {
     assert_int_equal(qc_analyze(ctx, &A, NULL, &S), QC_ERR_ARGUMENT);
     assert_int_equal(qc_ctx_error(ctx)->where, 2);
     row[3] = 1, row[4] = 2;
-    const int32_t twice[] = { 0, 1, 1 };
+    const int32_t twice[] = {0, 1, 1};
     qc_analyze_options options = QC_ANALYZE_OPTIONS_INIT;
     options.ordering = QC_ORDER_GIVEN;
     options.permutation = twice;

@@ -65,7 +65,8 @@ static void pivot_summaries(void **state) {
     qc_ctx_free(ctx);
 }
 
-/* A real Laplacian is singular; with a natural order the last row of each component is the pivot. */
+/* A real Laplacian is singular; with a natural order the last row of each component is the pivot.
+ */
 static void singular_matrix_is_refused(void **state) {
     (void)state;
     qc_ctx *ctx = new_ctx(1);
@@ -104,7 +105,7 @@ static void indefinite_pivot_is_named(void **state) {
             M.val[at].re = bad == 74 ? NAN : -good;
             assert_int_equal(qc_refactorize(ctx, F, &A), QC_ERR_NOT_POSDEF);
             assert_int_equal(qc_ctx_error(ctx)->where, bad);
-            qc_complex x[160] = { { 1, 0 } };
+            qc_complex x[160] = {{1, 0}};
             assert_int_equal(qc_solve(ctx, F, 1, x), QC_ERR_ARGUMENT);
             M.val[at].re = good;
             assert_int_equal(qc_refactorize(ctx, F, &A), QC_OK);
@@ -155,9 +156,9 @@ static void subset_of_the_pattern(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(product_is_the_matrix),      cmocka_unit_test(scale_does_not_matter),
-        cmocka_unit_test(pivot_summaries),            cmocka_unit_test(singular_matrix_is_refused),
-        cmocka_unit_test(indefinite_pivot_is_named),  cmocka_unit_test(subset_of_the_pattern),
+        cmocka_unit_test(product_is_the_matrix),     cmocka_unit_test(scale_does_not_matter),
+        cmocka_unit_test(pivot_summaries),           cmocka_unit_test(singular_matrix_is_refused),
+        cmocka_unit_test(indefinite_pivot_is_named), cmocka_unit_test(subset_of_the_pattern),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

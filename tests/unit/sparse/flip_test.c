@@ -37,8 +37,8 @@ static void add(test_matrix *M, int32_t k, int32_t l, qc_complex d) {
 static qc_complex turn(test_matrix *M, int32_t k, int32_t l, int r) {
     const qc_complex *a = k < l ? entry(M, k, l) : entry(M, l, k);
     const cplx x = a->re + I * (k < l ? a->im : -a->im);
-    const cplx powers[4] = { 1, I, -1, -I }, d = x * powers[r] - x;
-    return (qc_complex){ creal(d), cimag(d) };
+    const cplx powers[4] = {1, I, -1, -I}, d = x * powers[r] - x;
+    return (qc_complex){creal(d), cimag(d)};
 }
 
 static void flips_equal_refactorisation(void **state) {
@@ -77,7 +77,7 @@ static void special_flips(void **state) {
     (void)state;
     qc_ctx *ctx = new_ctx(1);
     test_matrix M = make_matrix(DENSE, 5, 1);
-    const qc_complex none = { 0, 0 }, d = { 0.2, -0.3 };
+    const qc_complex none = {0, 0}, d = {0.2, -0.3};
     qc_factor *F = factor_of(ctx, &M, NULL);
     const uint64_t before = fingerprint(F);
     assert_int_equal(qc_flip(ctx, F, 0, 1, none, 2, none), QC_OK);
@@ -108,7 +108,7 @@ static void failed_flip_changes_nothing(void **state) {
     for (int32_t t = 0; t < count; t++) {
         const int32_t *v = triangle[t];
         const double far = 3 * entry(&M, v[0], v[0])->re + 3 * entry(&M, v[1], v[1])->re;
-        const qc_complex d = { far, far };
+        const qc_complex d = {far, far};
         assert_int_equal(qc_flip(ctx, F, v[0], v[1], d, v[2], d), QC_ERR_NOT_POSDEF);
         assert_true(before == fingerprint(F));
     }

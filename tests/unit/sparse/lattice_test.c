@@ -105,7 +105,7 @@ static void greedy_fixes_the_cheapest(void **state) {
     qc_ctx *ctx = new_ctx(1);
     for (int n = 1; n <= N; n += n < 10 ? 3 : 10) {
         double P[N * N], t[N], z[N], expected[N], x[N];
-        bool fixed[N] = { false };
+        bool fixed[N] = {false};
         random_problem(n, 0.3, P, t);
         (void)relax(n, P, t, fixed, t, x);
         for (int step = 0; step < n; step++) {
@@ -186,7 +186,7 @@ static void pruning_misses_no_triple(void **state) {
                                (i == j ? 0.01 : 0);
         }
         for (int32_t radius = 2; radius <= 3; radius++) {
-            qc_lattice_options options = { sizeof options, trial % 3 ? QC_ROUND_DIRECT : 1, radius };
+            qc_lattice_options options = {sizeof options, trial % 3 ? QC_ROUND_DIRECT : 1, radius};
             assert_int_equal(qc_lattice_round(ctx, N, P, t, &options, z, NULL), QC_OK);
             energy_of[radius - 2] = energy(N, P, t, z);
         }
@@ -214,7 +214,7 @@ static void errors(void **state) {
     options.progress = stop;
     options.user = &left;
     assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
-    double P[400], t[20], z[20] = { 7 };
+    double P[400], t[20], z[20] = {7};
     random_problem(20, 1, P, t);
     for (int reports = 0; reports < 1000; reports++) {
         left = reports;

@@ -24,8 +24,8 @@ static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
     const qc_hermitian A = hermitian(M);
     qc_symbolic *S = NULL;
     qc_factor *F = NULL;
-    int32_t row[2] = { M->row[M->colptr[5]], 5 };
-    const qc_complex w[2] = { { 0.1, 0.2 }, { 0.3, 0 } };
+    int32_t row[2] = {M->row[M->colptr[5]], 5};
+    const qc_complex w[2] = {{0.1, 0.2}, {0.3, 0}};
     qc_complex *x = calloc((size_t)M->n * 12, sizeof *x);
     x[3].re = 1;
     qc_status status = qc_analyze(ctx, &A, NULL, &S);
@@ -50,9 +50,9 @@ static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
 
 static qc_status run_lattice(qc_ctx *ctx, const test_matrix *M) {
     (void)M;
-    double P[16] = { 4, 1, 0, 1, 1, 4, 1, 0, 0, 1, 4, 1, 1, 0, 1, 4 };
-    const double t[4] = { 0.4, 0.5, -1.5, 2.2 };
-    double z[4] = { 9, 9, 9, 9 };
+    double P[16] = {4, 1, 0, 1, 1, 4, 1, 0, 0, 1, 4, 1, 1, 0, 1, 4};
+    const double t[4] = {0.4, 0.5, -1.5, 2.2};
+    double z[4] = {9, 9, 9, 9};
     const qc_status status = qc_lattice_round(ctx, 4, P, t, NULL, z, NULL);
     if (status != QC_OK) assert_true(z[0] == 9 && z[3] == 9);
     return status;
@@ -60,7 +60,7 @@ static qc_status run_lattice(qc_ctx *ctx, const test_matrix *M) {
 
 static void fail_every_allocation(qc_status run(qc_ctx *, const test_matrix *)) {
     test_matrix M = make_matrix(GRID, 900, 0.5);
-    counter c = { 0, -1, 0 };
+    counter c = {0, -1, 0};
     qc_ctx_options options = QC_CTX_OPTIONS_INIT;
     options.resize = counting_resize;
     options.user = &c;

@@ -1,9 +1,10 @@
-/* Residuals, blocks of right-hand sides, the forward identity, sparse forward solves, refinement. */
+/* Residuals, blocks of right-hand sides, the forward identity, sparse forward solves, refinement.
+ */
 #include "support.h"
 
 static qc_complex *random_vectors(int64_t count) {
     qc_complex *x = malloc(((size_t)count + 1) * sizeof *x);
-    for (int64_t i = 0; i < count; i++) x[i] = (qc_complex){ uniform(), uniform() };
+    for (int64_t i = 0; i < count; i++) x[i] = (qc_complex){uniform(), uniform()};
     return x;
 }
 
@@ -91,7 +92,7 @@ static void forward_identity(void **state) {
     memcpy(y, b, (size_t)(2 * n) * sizeof *x);
     assert_int_equal(qc_solve(ctx, F, 2, x), QC_OK);
     assert_int_equal(qc_solve_forward(ctx, F, 2, y), QC_OK);
-    cplx direct[2] = { 0, 0 }, by_forward[2] = { 0, 0 };
+    cplx direct[2] = {0, 0}, by_forward[2] = {0, 0};
     for (int64_t k = 0; k < 2; k++)
         for (int64_t i = 0; i < n; i++) {
             direct[k] += (b[i].re - I * b[i].im) * (x[k * n + i].re + I * x[k * n + i].im);
@@ -119,18 +120,18 @@ static void sparse_forward_equals_dense_forward(void **state) {
             memset(dense, 0, sizeof dense);
             for (int32_t p = 0; p < nb; p++) {
                 row[p] = pick(M.n); /* may repeat: entries add */
-                b[p] = (qc_complex){ uniform(), uniform() };
+                b[p] = (qc_complex){uniform(), uniform()};
                 dense[row[p]].re += b[p].re;
                 dense[row[p]].im += b[p].im;
             }
-            for (int32_t i = 0; i < M.n; i++) y[i] = (qc_complex){ NAN, NAN };
+            for (int32_t i = 0; i < M.n; i++) y[i] = (qc_complex){NAN, NAN};
             assert_int_equal(qc_solve_forward_sparse(ctx, F, nb, row, b, y), QC_OK);
             assert_int_equal(qc_solve_forward(ctx, F, 1, dense), QC_OK);
             for (int32_t i = 0; i < M.n; i++)
                 assert_true(y[i].re == dense[i].re && y[i].im == dense[i].im);
         }
         const int32_t outside = M.n;
-        const qc_complex one = { 1, 0 };
+        const qc_complex one = {1, 0};
         qc_complex y[200];
         assert_int_equal(qc_solve_forward_sparse(ctx, F, 1, &outside, &one, y), QC_ERR_ARGUMENT);
         qc_factor_free(F);

@@ -19,7 +19,9 @@ static inline double uniform(void) { /* in [-1, 1) */
     seed_state = seed_state * 6364136223846793005u + 1442695040888963407u;
     return (double)(int64_t)seed_state / 9223372036854775808.0;
 }
-static inline int32_t pick(int32_t n) { return (int32_t)((uniform() + 1) * 0.5 * n); }
+static inline int32_t pick(int32_t n) {
+    return (int32_t)((uniform() + 1) * 0.5 * n);
+}
 
 /* A growing matrix and its two views. */
 typedef struct test_matrix {
@@ -31,15 +33,16 @@ typedef struct test_matrix {
 } test_matrix;
 
 static inline qc_hermitian hermitian(const test_matrix *M) {
-    return (qc_hermitian){ M->n, M->colptr, M->row, M->val };
+    return (qc_hermitian){M->n, M->colptr, M->row, M->val};
 }
 static inline qc_symmetric symmetric(const test_matrix *M) {
-    return (qc_symmetric){ M->n, M->colptr, M->row, M->real };
+    return (qc_symmetric){M->n, M->colptr, M->row, M->real};
 }
 
 /* Edges (a, b) with weight 1 become w (e^{i phase} and its conjugate); the diagonal dominates by
  * `shift`, so the matrix is a Laplacian with phases plus shift. */
-static inline test_matrix from_edges(int32_t n, int64_t ne, const int32_t (*edge)[2], double shift) {
+static inline test_matrix from_edges(int32_t n, int64_t ne, const int32_t (*edge)[2],
+                                     double shift) {
     bool *dense = calloc((size_t)n * (size_t)n + 1, sizeof *dense);
     int64_t nnz = n;
     for (int64_t e = 0; e < ne; e++) {
@@ -50,8 +53,8 @@ static inline test_matrix from_edges(int32_t n, int64_t ne, const int32_t (*edge
             nnz++;
         }
     }
-    test_matrix M = { n, malloc(((size_t)n + 1) * 8), malloc((size_t)nnz * 4 + 4),
-                      malloc((size_t)nnz * 16 + 16), malloc((size_t)nnz * 8 + 8) };
+    test_matrix M = {n, malloc(((size_t)n + 1) * 8), malloc((size_t)nnz * 4 + 4),
+                     malloc((size_t)nnz * 16 + 16), malloc((size_t)nnz * 8 + 8)};
     double *diagonal = calloc((size_t)n + 1, sizeof *diagonal);
     int64_t q = 0;
     for (int pass = 0; pass < 2; pass++) {
@@ -63,7 +66,7 @@ static inline test_matrix from_edges(int32_t n, int64_t ne, const int32_t (*edge
                 if (pass == 0) {
                     const double weight = 1.5 + uniform(), phase = 4 * uniform();
                     M.row[q] = i;
-                    M.val[q] = (qc_complex){ -weight * cos(phase), -weight * sin(phase) };
+                    M.val[q] = (qc_complex){-weight * cos(phase), -weight * sin(phase)};
                     M.real[q] = -weight;
                     diagonal[i] += weight;
                     diagonal[j] += weight;
@@ -71,7 +74,7 @@ static inline test_matrix from_edges(int32_t n, int64_t ne, const int32_t (*edge
                 q++;
             }
             M.row[q] = j;
-            M.val[q] = (qc_complex){ diagonal[j] + shift, 77 }; /* the 77 has to be ignored */
+            M.val[q] = (qc_complex){diagonal[j] + shift, 77}; /* the 77 has to be ignored */
             M.real[q++] = diagonal[j] + shift;
         }
     }
@@ -105,7 +108,9 @@ static inline test_matrix make_matrix(int shape, int32_t n, double shift) {
         case RANDOM:
             for (int k = 0; k < 2; k++) edge[ne][0] = i, edge[ne++][1] = pick(n);
             break;
-        case ARROW: edge[ne][0] = i, edge[ne++][1] = n / 2; break;
+        case ARROW:
+            edge[ne][0] = i, edge[ne++][1] = n / 2;
+            break;
         case BLOCKS:
             if (i % 7) edge[ne][0] = i, edge[ne++][1] = i - 1 - pick(i % 7);
             break;
@@ -115,7 +120,8 @@ static inline test_matrix make_matrix(int shape, int32_t n, double shift) {
         case DENSE:
             for (int32_t j = 0; j < i; j++) edge[ne][0] = i, edge[ne++][1] = j;
             break;
-        default: break;
+        default:
+            break;
         }
     }
     test_matrix M = from_edges(n, ne, (const int32_t(*)[2])edge, shift);
@@ -147,15 +153,15 @@ static inline cplx *reconstruct(const qc_factor *F) {
         for (int64_t k = 0; k < w; k++)
             for (int64_t i = k; i < r; i++) {
                 const double *x = F->values + nc * (S->panel[s] + i + k * r);
-                L[S->rows[S->rowptr[s] + i] + (S->super[s] + k) * n] = x[0] + (nc == 2 ? I * x[1] : 0);
+                L[S->rows[S->rowptr[s] + i] + (S->super[s] + k) * n] =
+                    x[0] + (nc == 2 ? I * x[1] : 0);
             }
     }
     for (int64_t k = 0; k < n; k++)
         for (int64_t j = k; j < n; j++) {
             const cplx factor = F->D[k] * conj(L[j + k * n]);
             if (factor == 0) continue;
-            for (int64_t i = k; i < n; i++)
-                A[S->perm[i] + S->perm[j] * n] += L[i + k * n] * factor;
+            for (int64_t i = k; i < n; i++) A[S->perm[i] + S->perm[j] * n] += L[i + k * n] * factor;
         }
     free(L);
     return A;

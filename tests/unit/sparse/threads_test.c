@@ -6,17 +6,17 @@
 static test_matrix big(void) {
     const int32_t side = 90, n = side * side;
     int64_t q = 0;
-    test_matrix M = { n, malloc(((size_t)n + 1) * 8), malloc((size_t)n * 3 * 4),
-                      malloc((size_t)n * 3 * 16), malloc((size_t)n * 3 * 8) };
+    test_matrix M = {n, malloc(((size_t)n + 1) * 8), malloc((size_t)n * 3 * 4),
+                     malloc((size_t)n * 3 * 16), malloc((size_t)n * 3 * 8)};
     for (int32_t j = 0; j < n; j++) {
         M.colptr[j] = q;
-        const int32_t before[3] = { j >= side ? j - side : -1, j % side ? j - 1 : -1, j };
+        const int32_t before[3] = {j >= side ? j - side : -1, j % side ? j - 1 : -1, j};
         for (int k = 0; k < 3; k++) {
             if (before[k] < 0) continue;
             const double phase = 3 * uniform();
             M.row[q] = before[k];
-            M.val[q] = before[k] == j ? (qc_complex){ 4.01, 0 }
-                                      : (qc_complex){ -cos(phase), -sin(phase) };
+            M.val[q] =
+                before[k] == j ? (qc_complex){4.01, 0} : (qc_complex){-cos(phase), -sin(phase)};
             M.real[q++] = before[k] == j ? 4.01 : -1;
         }
     }
@@ -27,7 +27,7 @@ static test_matrix big(void) {
 static void same_bytes_for_any_number_of_threads(void **state) {
     (void)state;
     test_matrix M = big();
-    uint64_t expected[2] = { 0, 0 };
+    uint64_t expected[2] = {0, 0};
     qc_complex *first = NULL;
     const size_t size = (size_t)M.n * 20;
     for (uint32_t threads = 1; threads <= 3; threads++) {
@@ -37,7 +37,7 @@ static void same_bytes_for_any_number_of_threads(void **state) {
         qc_complex *x = malloc(size * sizeof *x);
         double residual = 1;
         const qc_hermitian A = hermitian(&M);
-        for (size_t i = 0; i < size; i++) x[i] = (qc_complex){ sin((double)i), cos((double)i) };
+        for (size_t i = 0; i < size; i++) x[i] = (qc_complex){sin((double)i), cos((double)i)};
         assert_int_equal(qc_solve_refined(ctx, F, &A, 0, x, &residual), QC_OK);
         assert_true(residual < 1e-15);
         assert_int_equal(qc_solve(ctx, F, 20, x), QC_OK);

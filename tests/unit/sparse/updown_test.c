@@ -46,8 +46,8 @@ static void chain_equals_refactorisation(void **state) {
             int32_t row[2];
             const int nw = random_clique(&M, row) ? 2 : 1, sigma = step % 3 ? 1 : -1;
             const double size = sigma < 0 ? 0.2 : 0.5;
-            const qc_complex w[2] = { { size * uniform(), size * uniform() },
-                                      { size * uniform(), size * uniform() } };
+            const qc_complex w[2] = {{size * uniform(), size * uniform()},
+                                     {size * uniform(), size * uniform()}};
             const uint64_t before = fingerprint(F);
             const qc_status status = qc_updown(ctx, F, sigma, nw, row, w);
             if (status == QC_OK) {
@@ -74,10 +74,9 @@ static void real_chain_equals_refactorisation(void **state) {
             int32_t row[2];
             const int nw = random_clique(&M, row) ? 2 : 1, sigma = step % 3 ? 1 : -1;
             const double size = sigma < 0 ? 0.2 : 0.5;
-            const qc_complex w[2] = { { size * uniform(), 0 }, { size * uniform(), 0 } };
-            const double real[2] = { w[0].re, w[1].re };
-            if (qc_updown_real(ctx, F, sigma, nw, row, real) == QC_OK)
-                apply(&M, sigma, nw, row, w);
+            const qc_complex w[2] = {{size * uniform(), 0}, {size * uniform(), 0}};
+            const double real[2] = {w[0].re, w[1].re};
+            if (qc_updown_real(ctx, F, sigma, nw, row, real) == QC_OK) apply(&M, sigma, nw, row, w);
         }
         check_against_matrix(F, &M, true);
         qc_factor_free(F);
@@ -96,7 +95,7 @@ static void update_then_downdate_is_identity(void **state) {
     for (int step = 0; step < 50; step++) {
         int32_t row[2];
         if (!random_clique(&M, row)) continue;
-        const qc_complex w[2] = { { uniform(), uniform() }, { uniform(), uniform() } };
+        const qc_complex w[2] = {{uniform(), uniform()}, {uniform(), uniform()}};
         assert_int_equal(qc_updown(ctx, F, 1, 2, row, w), QC_OK);
         assert_int_equal(qc_updown(ctx, F, -1, 2, row, w), QC_OK);
     }
@@ -121,7 +120,7 @@ static void failed_downdate_changes_nothing(void **state) {
             int32_t row[2];
             const int nw = random_clique(&M, row) ? 2 : 1;
             const double size = 0.8 * sqrt(M.val[M.colptr[row[0] + 1] - 1].re);
-            const qc_complex w[2] = { { size, 0 }, { 0, size } };
+            const qc_complex w[2] = {{size, 0}, {0, size}};
             const qc_status status = qc_updown(ctx, F, -1, nw, row, w);
             if (status == QC_OK) { /* one entry can be right for such a step: undo it */
                 qc_factor_free(F);
@@ -147,8 +146,8 @@ static void arguments_are_checked(void **state) {
     test_matrix M = make_matrix(BLOCKS, 70, 1);
     qc_factor *F = factor_of(ctx, &M, NULL);
     const uint64_t before = fingerprint(F);
-    const int32_t apart[2] = { 0, 60 }, outside = 70;
-    const qc_complex w[2] = { { 1, 0 }, { 1, 0 } };
+    const int32_t apart[2] = {0, 60}, outside = 70;
+    const qc_complex w[2] = {{1, 0}, {1, 0}};
     assert_int_equal(qc_updown(ctx, F, 1, 2, apart, w), QC_ERR_ARGUMENT);
     assert_int_equal(qc_updown(ctx, F, 1, 1, &outside, w), QC_ERR_ARGUMENT);
     assert_int_equal(qc_updown(ctx, F, 0, 1, apart, w), QC_ERR_ARGUMENT);
