@@ -1,5 +1,5 @@
-# Installation: headers, the shared library, the program, a package for find_package and one for
-# pkg-config. The static twin is for tests only and stays behind.
+# Installation: headers, the shared library, a package for find_package and one for pkg-config (the
+# program installs itself). The static twin is for tests only and stays behind.
 include(CMakePackageConfigHelpers)
 
 # Headers alone: what a plugin needs which calls no function of the library.
@@ -18,13 +18,6 @@ install(TARGETS quadcover_shared quadcover_headers EXPORT QuadCoverTargets
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/plugins/template
         DESTINATION ${CMAKE_INSTALL_DATADIR}/quadcover PATTERN "build*" EXCLUDE)
-
-# The program finds the library beside it, wherever the prefix is moved to.
-file(RELATIVE_PATH _qc_bin_to_lib ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-if(TARGET quadcover)
-  set_target_properties(quadcover PROPERTIES INSTALL_RPATH "$ORIGIN/${_qc_bin_to_lib}")
-  install(TARGETS quadcover RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()
 
 set(_qc_package ${CMAKE_INSTALL_LIBDIR}/cmake/QuadCover)
 install(EXPORT QuadCoverTargets NAMESPACE QuadCover:: DESTINATION ${_qc_package})

@@ -53,9 +53,9 @@ say "installed program with the plugin"
 unset LD_LIBRARY_PATH # the program finds its library by itself
 plugin=$scratch/plugin/smooth_field.so
 "$quadcover" stages --plugin "$plugin" | grep -q org.example.smooth_field || die "stages: not listed"
-"$quadcover" shape sphere -o "$scratch/in.obj"
+"$quadcover" shape ellipsoid --resolution 2000 -o "$scratch/in.obj"
 for pipeline in replace insert; do
-    "$quadcover" remesh "$scratch/in.obj" -o "$scratch/$pipeline.obj" --quads 500 \
+    "$quadcover" remesh "$scratch/in.obj" -o "$scratch/$pipeline.obj" --set size.quads=500 \
         --plugin "$plugin" --pipeline "$here/$pipeline.json" --progress none
     "$quadcover" check "$scratch/$pipeline.obj" > "$scratch/check" || { cat "$scratch/check"; exit 1; }
 done
