@@ -7,20 +7,24 @@
 #include <string.h>
 
 typedef struct params {
-    double lambda;
+    double lambda, detail;
     int64_t rounds;
     bool relax;
 } params;
 
+#define DEFAULT_QUADS 10000.0
+
 /* Start: the field itself, or the minimiser of the same energy over x^4, which is convex. */
-static qc_status smooth_field(qc_ctx *ctx, const qc_face_field *field, const params *given,
-                              qc_complex *x) {
+static qc_status smooth_field(qc_ctx *ctx, const qc_face_field *field, const qc_sizing *sizing,
+                              const params *given, qc_complex *x) {
     const qc_mesh *mesh = field->mesh;
     double lambda = given->lambda, t = (1 - lambda) / fmax(lambda, 1e-6);
+    double quad = sizing ? sizing->edge_length : sqrt(mesh->area / DEFAULT_QUADS);
     qc_status status = QC_OK;
     memcpy(x, field->x, (size_t)mesh->n_faces * sizeof *x);
     if (given->relax)
-        status = qc_field_smoothest(ctx, mesh, field->weight, field->trusted, t, x);
+        status = qc_field_smoothest(ctx, mesh, field->weight, field->trusted, t,
+                                    given->detail * quad, x);
     if (!status)
         status = qc_field_smooth(ctx, mesh, field->x, field->weight, field->trusted, lambda,
                                  (int32_t)given->rounds, x);
@@ -33,7 +37,7 @@ static qc_status smooth(const qc_run *run, const void *p) {
     qc_complex *x = QC__NEW(run->ctx, qc_complex, mesh->n_faces);
     if (!x) return QC_ERR_NOMEM;
     qc_face_field *out = NULL;
-    qc_status status = smooth_field(run->ctx, field, p, x);
+    qc_status status = smooth_field(run->ctx, field, run->input(run, "sizing"), p, x);
     if (!status)
         status = qc_face_field_create(run->ctx, mesh, x, field->weight, field->trusted, &out);
     qc__free(x);
@@ -42,11 +46,16 @@ static qc_status smooth(const qc_run *run, const void *p) {
 
 static const qc_port inputs[] = {
     {"field", QC_TYPE_FACE_FIELD, 0, "cross field with stability weights and trusted faces"},
+    {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL,
+     "length of a quad, the unit of `detail`; without, that of 10000 quads"},
 };
 static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothed field"}};
 static const qc_param table[] = {
     QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "",
                   "0 keeps the trusted directions, 1 ignores them and only smooths"),
+    QC_PARAM_REAL(params, detail, 1, 0, 100, "quad",
+                  "with relax: pairs of singularities nearer than about this many edge lengths of the "
+                  "quads are closed; 0 = leave them"),
     QC_PARAM_INT(params, rounds, 20, 0, 1000, "",
                  "at most so many times: solve, rotate, match again; ends when the matching stays"),
     QC_PARAM_BOOL(params, relax, true,
@@ -66,10 +75,10 @@ const qc_stage qc_stage_field_smooth = {
     "thesis 5.2, (5.3), (5.4)",
     inputs,
     outputs,
-    1,
+    2,
     1,
     table,
-    3,
+    4,
     sizeof(params),
     smooth,
 };

@@ -3,9 +3,13 @@
 #include <qc/field.h>
 #include <qc/stage.h>
 
+#include <math.h>
+
 typedef struct params {
-    double alignment;
+    double alignment, detail;
 } params;
+
+#define DEFAULT_QUADS 10000.0
 
 static qc_status smoothest(const qc_run *run, const void *p) {
     const params *given = p;
@@ -18,8 +22,10 @@ static qc_status smoothest(const qc_run *run, const void *p) {
     for (int32_t t = 0; t < mesh->n_faces; t++) x[t] = guide ? guide->x[t] : (qc_complex){1, 0};
     const double *weight = guide ? guide->weight : NULL;
     const uint8_t *trusted = guide ? guide->trusted : NULL;
+    const qc_sizing *sizing = run->input(run, "sizing");
+    double quad = sizing ? sizing->edge_length : sqrt(mesh->area / DEFAULT_QUADS);
     qc_status status = qc_field_smoothest(run->ctx, mesh, weight, trusted,
-                                          guide ? given->alignment : 0, x);
+                                          guide ? given->alignment : 0, given->detail * quad, x);
     qc_face_field *out = NULL;
     if (!status) status = qc_face_field_create(run->ctx, mesh, x, weight, trusted, &out);
     qc__free(x);
@@ -30,11 +36,16 @@ static const qc_port inputs[] = {
     {"mesh", QC_TYPE_MESH, 0, "triangle mesh"},
     {"guide", QC_TYPE_FACE_FIELD, QC_PORT_OPTIONAL,
      "field with stability weights and trusted faces to align with"},
+    {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL,
+     "length of a quad, the unit of `detail`; without, that of 10000 quads"},
 };
 static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothest field"}};
 static const qc_param table[] = {
     QC_PARAM_REAL(params, alignment, 1, 0, 1e6, "",
                   "pull of the guide's trusted faces against smoothness; 0, or no guide, ignores it"),
+    QC_PARAM_REAL(params, detail, 1, 0, 100, "quad",
+                  "pairs of singularities nearer than about this many edge lengths of the quads are "
+                  "closed by a gradient flow with |x| = 1; 0 = leave them"),
 };
 
 const qc_stage qc_stage_field_smoothest = {
@@ -49,10 +60,10 @@ const qc_stage qc_stage_field_smoothest = {
     "Knoeppel et al. 2013; weights of thesis (5.3)",
     inputs,
     outputs,
-    2,
+    3,
     1,
     table,
-    1,
+    2,
     sizeof(params),
     smoothest,
 };

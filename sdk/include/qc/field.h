@@ -73,9 +73,12 @@ QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_comp
 /* Smoothest field: in each component the eigenvector of the smallest eigenvalue of the connection Laplacian
  * on fourth powers x^4, by inverse iteration on its factor. With alignment > 0 and weight or trusted given:
  * minimiser of E_S(x^4) + alignment sum w_t A_t / l^2 |x^4 - guide^4|^2 over the trusted faces (in: guide,
- * out: field); components without any trusted face get the eigenvector. Errors as above. */
+ * out: field); components without any trusted face get the eigenvector. detail > 0, a length in the units of
+ * the mesh: then gradient flow with |x| = 1 kept, which closes pairs of singularities nearer than about that;
+ * 0 = off. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
-                                    const uint8_t *trusted, double alignment, qc_complex *x);
+                                    const uint8_t *trusted, double alignment, double detail,
+                                    qc_complex *x);
 
 /* Matching and indices of a cross field (DESIGN 3). */
 typedef struct qc_matching {

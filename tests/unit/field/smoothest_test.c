@@ -1,9 +1,10 @@
 /* The smoothest field: few singularities, parallel where parallel fields exist, stationary. */
+#include "sdk/field/power_system.h"
 #include "surfaces.h"
 
 static qc_complex *smoothest(qc_ctx *ctx, const qc_mesh *mesh) {
     qc_complex *x = malloc(sizeof *x * (size_t)mesh->n_faces);
-    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, NULL, 0, x), QC_OK);
+    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, NULL, 0, 0, x), QC_OK);
     return x;
 }
 
@@ -53,7 +54,7 @@ static void components_are_independent(void **state) {
     uint8_t trusted[144] = {0};
     for (int i = 0; i < 144; i++) x[i] = guide;
     trusted[10] = 1;
-    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, trusted, 1, x), QC_OK);
+    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, trusted, 1, 0, x), QC_OK);
     for (size_t t = 0; t < (size_t)F; t++)
         assert_true(cross_angle(x[t], in_frame(real, imaginary, t, diagonal)) < 1e-6);
     qc_matching *m = match(ctx, mesh, x);
@@ -75,15 +76,67 @@ static void alignment_moves_towards_the_guide(void **state) {
     for (int i = 0; i < 4; i++) {
         double sum = 0;
         memcpy(x, guide, sizeof *x * F);
-        assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, alignments[i], x), QC_OK);
+        assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, alignments[i], 0, x), QC_OK);
         for (size_t t = 0; t < F; t++) sum += cross_angle(x[t], guide[t]) / (double)F;
         assert_true(sum < before);
         before = sum;
     }
     assert_true(before < 1e-3);
-    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, -1, x), QC_ERR_ARGUMENT);
+    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, -1, 0, x), QC_ERR_ARGUMENT);
     qc_object_release(mesh);
     free(guide);
+    free(x);
+    free(all);
+}
+
+static void eigenvectors_have_no_residual(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *mesh = ellipsoid(ctx, 24, 15, 1, 1.4, 2);
+    qc__power_system s;
+    assert_int_equal(qc__power_create(ctx, mesh, NULL, NULL, 0, &s), QC_OK);
+    qc__power_fill(&s, 1e-12, 0);
+    assert_int_equal(qc__power_factorise(ctx, &s), QC_OK);
+    assert_int_equal(qc__power_eigenvector(ctx, &s), QC_OK);
+    qc__power_fill(&s, 0, 0);
+    double norm = 0, residual = 0;
+    for (int32_t t = 0; t < mesh->n_faces; t++) s.work[t] = -s.mu[0] * s.mass[t] * s.z[t];
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        for (int64_t k = s.pattern.colptr[t]; k < s.pattern.colptr[t + 1]; k++) {
+            qc__cplx a = qc__c(s.value[k]);
+            s.work[s.pattern.row[k]] += a * s.z[t];
+            if (s.pattern.row[k] != t) s.work[t] += conj(a) * s.z[s.pattern.row[k]];
+        }
+        norm += s.mass[t] * pow(cabs(s.z[t]), 2);
+    }
+    assert_true(s.mu[0] > 0 && fabs(norm - 1) < 1e-9);
+    for (int32_t t = 0; t < mesh->n_faces; t++) residual += pow(cabs(s.work[t]), 2) / s.mass[t];
+    assert_true(sqrt(residual) < 1e-3 * s.mu[0]);
+    qc__power_free(&s);
+    qc_object_release(mesh);
+}
+
+/* Noise in the guide makes pairs; the flow closes those nearer than the detail and keeps the sum. */
+static void detail_closes_pairs(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *mesh = ellipsoid(ctx, 60, 40, 1, 1, 1);
+    size_t F = (size_t)mesh->n_faces;
+    qc_complex *x = malloc(sizeof *x * F);
+    uint8_t *all = malloc(F);
+    memset(all, 1, F);
+    int32_t before = INT32_MAX;
+    for (int i = 0; i < 2; i++) {
+        qc_complex *noise = random_crosses(mesh, 13);
+        memcpy(x, noise, sizeof *x * F);
+        assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, 0.1, 0.1 * i, x), QC_OK);
+        qc_matching *m = match(ctx, mesh, x);
+        assert_int_equal(m->index4_sum, 8);
+        assert_true(m->n_singular < before);
+        before = m->n_singular;
+        qc_object_release(m);
+        free(noise);
+    }
+    assert_int_equal(qc_field_smoothest(ctx, mesh, NULL, all, 1, -1, x), QC_ERR_ARGUMENT);
+    qc_object_release(mesh);
     free(x);
     free(all);
 }
@@ -114,6 +167,8 @@ int main(void) {
         cmocka_unit_test(flat_surfaces_get_parallel_fields),
         cmocka_unit_test(components_are_independent),
         cmocka_unit_test(alignment_moves_towards_the_guide),
+        cmocka_unit_test(eigenvectors_have_no_residual),
+        cmocka_unit_test(detail_closes_pairs),
         cmocka_unit_test(threads_give_the_same_bits),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
