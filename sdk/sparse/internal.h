@@ -76,6 +76,7 @@ struct qc_factor {
     double *journal;  /* updown: old columns, for roll back; grows  */
     int32_t *journal_column;
     int64_t journal_size, journal_columns; /* capacities */
+    int64_t journal_used, journal_count; /* doubles, columns recorded                            */
 };
 
 #define QC__EPS 2.220446049250313e-16
@@ -119,6 +120,12 @@ qc_symbolic *qc__symbolic_retain(const qc_symbolic *S);
 /* factor.c */
 qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t components, qc_factor **out);
 qc_status qc__factor_check(qc_ctx *ctx, const qc_factor *F, int32_t components, bool values);
+
+/* journal.c: open reserves space for every column on the path from supernode s, kept in the factor
+ * for the next call; record before a column (count doubles from its diagonal on) changes. */
+qc_status qc__journal_open(qc_ctx *ctx, qc_factor *F, int32_t s);
+void qc__journal_record(qc_factor *F, int32_t column, const double *x, int64_t count);
+void qc__journal_roll_back(qc_factor *F);
 
 /* kernel.c: y_q -= sum_k X_k c[k * 4 + q] for four columns (q = 0..3), or one (stride 1). */
 void qc__subtract4(int64_t n, int64_t K, const double *X, int64_t ldx, const double *c, double *y,

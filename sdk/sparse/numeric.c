@@ -95,14 +95,19 @@ static qc_status not_posdef(qc_ctx *ctx, const qc_symbolic *S, int32_t column) {
                     (int)row);
 }
 
-static qc_status run_step(qc_ctx *ctx, run *R, const qc__step *step) {
+/* done: flops before this step */
+static qc_status run_step(qc_ctx *ctx, run *R, const qc__step *step, double done) {
     const qc__plan *plan = &R->S->plan;
+    const int32_t tops = step->top_end - step->top;
+    if (!qc__progress(ctx, done / plan->flops)) return QC_ERR_CANCELLED;
     R->task = step->task;
     qc__parallel_for(ctx, step->task_end - step->task, 1, run_tasks, R);
     for (int32_t t = step->task; t < step->task_end; t++)
         if (R->failed[t] >= 0) return not_posdef(ctx, R->S, R->failed[t]);
-    for (int32_t k = step->top; k < step->top_end; k++) {
-        const int32_t bad = factor_supernode(R, plan->top[k], 0);
+    for (int32_t k = 0; k < tops; k++) {
+        const double fraction = (done + step->flops * k / tops) / plan->flops;
+        if (!qc__progress(ctx, fraction)) return QC_ERR_CANCELLED;
+        const int32_t bad = factor_supernode(R, plan->top[step->top + k], 0);
         if (bad >= 0) return not_posdef(ctx, R->S, bad);
     }
     return QC_OK;
@@ -112,8 +117,7 @@ static qc_status run_plan(qc_ctx *ctx, run *R) {
     const qc__plan *plan = &R->S->plan;
     double done = 0;
     for (int32_t i = 0; i < plan->nstep; i++) {
-        if (!qc__progress(ctx, done / plan->flops)) return QC_ERR_CANCELLED;
-        const qc_status status = run_step(ctx, R, &plan->step[i]);
+        const qc_status status = run_step(ctx, R, &plan->step[i], done);
         if (status != QC_OK) return status;
         done += plan->step[i].flops;
     }

@@ -17,32 +17,7 @@ typedef struct sweep {
     double negligible; /* entries of v below this are taken as zero */
     double *v[2];      /* the vectors on the rows of the present supernode, then of its parent */
     double *next[2];
-    int64_t used;    /* doubles in the journal */
-    int32_t columns; /* in the journal */
 } sweep;
-
-/* Journal record of a column: its rows from the diagonal on, then its pivot. */
-static void record(sweep *W, int32_t column, const double *x, int64_t count) {
-    qc_factor *F = W->F;
-    memcpy(F->journal + W->used, x, (size_t)count * sizeof *x);
-    F->journal[W->used + count] = F->D[column];
-    F->journal_column[W->columns++] = column;
-    W->used += count + 1;
-}
-
-static void roll_back(sweep *W) {
-    qc_factor *F = W->F;
-    const qc_symbolic *S = F->S;
-    while (W->columns > 0) {
-        const int32_t column = F->journal_column[--W->columns], s = S->super_of[column];
-        const int64_t k = column - S->super[s], r = S->rowptr[s + 1] - S->rowptr[s];
-        const int64_t count = NC * (r - k);
-        W->used -= count + 1;
-        memcpy(F->values + NC * (S->panel[s] + k * r + k), F->journal + W->used,
-               (size_t)count * sizeof(double));
-        F->D[column] = F->journal[W->used + count];
-    }
-}
 
 /* w_i -= p l_i, l_i += b w_i for n rows */
 static void column_step(int64_t n, const double *p, const double *b, double *restrict l,
@@ -92,7 +67,7 @@ static bool update_column(sweep *W, int32_t column, double floor, double *x, int
     for (int q = 0; q < W->vectors; q++)
         for (int c = 0; c < NC; c++) any |= (p[q][c] = W->v[q][NC * k + c]) != 0;
     if (!any) return true; /* both steps would be the identity */
-    record(W, column, x, NC * (n + 1));
+    qc__journal_record(W->F, column, x, NC * (n + 1));
     double d = W->F->D[column];
     for (int q = 0; q < W->vectors; q++) {
         const double a = W->a[q];
@@ -194,22 +169,6 @@ static qc_status first_row(qc_ctx *ctx, const qc_symbolic *S, int32_t nw, const 
     return QC_OK;
 }
 
-/* Space for every column on the path, kept in the factor for the next call. */
-static qc_status reserve_journal(qc_ctx *ctx, qc_factor *F, int32_t s) {
-    const qc_symbolic *S = F->S;
-    int64_t size = 0, columns = 0;
-    for (; s != -1; s = S->parent[s]) {
-        const int64_t w = S->super[s + 1] - S->super[s], r = S->rowptr[s + 1] - S->rowptr[s];
-        size += NC * (r * w - w * (w - 1) / 2) + w;
-        columns += w;
-    }
-    if (!qc__reserve(ctx, (void **)&F->journal, &F->journal_size, size, sizeof(double)) ||
-        !qc__reserve(ctx, (void **)&F->journal_column, &F->journal_columns, columns,
-                     sizeof(int32_t)))
-        return QC_ERR_NOMEM;
-    return QC_OK;
-}
-
 /* w: vectors x nw. change_diagonal: add sigma |w|^2 to the diagonal of A (a flip leaves it). */
 static qc_status update(qc_ctx *ctx, qc_factor *F, int vectors, const double *sigma, int32_t nw,
                         const int32_t *row, const double *w, const double *diagonal_change) {
@@ -220,11 +179,11 @@ static qc_status update(qc_ctx *ctx, qc_factor *F, int vectors, const double *si
     if (status != QC_OK) return status;
     const int32_t s = S->super_of[lowest];
     const int64_t front = NC * (int64_t)S->plan.largest_front;
-    status = reserve_journal(ctx, F, s);
+    status = qc__journal_open(ctx, F, s);
     if (status != QC_OK) return status;
     double *work = QC__NEW(ctx, double, 2 * vectors * front);
     if (!work) return QC_ERR_NOMEM;
-    sweep W = {F, vectors, {0, 0}, 0, {work, work}, {work, work}, 0, 0};
+    sweep W = {F, vectors, {0, 0}, 0, {work, work}, {work, work}};
     for (int64_t i = 0; i < NC * (int64_t)vectors * nw; i++)
         W.negligible = fmax(W.negligible, 1e-80 * fabs(w[i]));
     for (int q = 0; q < vectors; q++) {
@@ -239,7 +198,7 @@ static qc_status update(qc_ctx *ctx, qc_factor *F, int vectors, const double *si
     }
     const int32_t bad = sweep_path(&W, s, lowest, diagonal_change, row, nw);
     if (bad >= 0) {
-        roll_back(&W);
+        qc__journal_roll_back(F);
         status = qc__fail(ctx, QC_ERR_NOT_POSDEF, S->perm[bad],
                           "update would make the matrix indefinite at row %d; the factor is as "
                           "before",

@@ -52,6 +52,7 @@ typedef struct qc_symbolic_info {
     double flops;   /* multiply-add pairs counted as 2 real flops for the real case; x4 complex     */
     int64_t bytes_complex, bytes_real; /* memory of a factor                                        */
 } qc_symbolic_info;
+#define QC_SYMBOLIC_INFO_INIT { sizeof(qc_symbolic_info), 0, 0, 0, 0, 0, 0.0, 0, 0 }
 
 /* Symbolic analysis of the pattern (values are not read; val may be NULL). options NULL = AMD.
  * Errors: ARGUMENT (where = column whose rows are unsorted, out of range or without diagonal; or the
@@ -97,7 +98,8 @@ QC_API qc_status qc_solve_refined(qc_ctx *ctx, const qc_factor *F, const qc_herm
                                   int32_t steps, qc_complex *x, double *residual);
 
 /* A <- A + sigma w w^H, sigma = +1 or -1, w sparse with nw entries; the pattern of L is fixed: the
- * rows of w must form a clique of A (ARGUMENT otherwise). On any error F is bit for bit as before.
+ * rows of w must differ and form a clique of A (ARGUMENT if they do not fit L). On any error F is
+ * bit for bit as before. Entries which have decayed below 1e-80 of the largest are taken as zero.
  * Errors: NOT_POSDEF (a downdate left the cone; where = pivot), ARGUMENT, NOMEM. */
 QC_API qc_status qc_updown(qc_ctx *ctx, qc_factor *F, int sigma, int32_t nw, const int32_t *row,
                            const qc_complex *w);
