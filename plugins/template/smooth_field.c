@@ -90,11 +90,6 @@ static const qc_stage *const *stages(void) {
 }
 
 QC_PLUGIN_EXPORT const qc_plugin qc_plugin_1 = {
-    sizeof(qc_plugin),
-    QC_ABI_MAJOR,
-    QC_ABI_MINOR,
-    .id = "org.example.smooth_field",
-    .version = "1.0",
-    .license = "MIT",
-    .stages = stages,
+    sizeof(qc_plugin), QC_ABI_MAJOR,     QC_ABI_MINOR,     .id = "org.example.smooth_field",
+    .version = "1.0",  .license = "MIT", .stages = stages,
 };

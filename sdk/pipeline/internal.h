@@ -22,6 +22,12 @@ const char *qc__short_id(const char *id);
 /* Letters, digits and any of `extra`, 1 .. 63 of them. */
 bool qc__is_name(const char *text, const char *extra);
 char *qc__copy_text(qc_ctx *ctx, const char *text);
+/* " (closest: 'lambda')" among n structs of `stride` bytes which start with their name, or "". */
+typedef struct qc__hint {
+    char text[96];
+} qc__hint;
+qc__hint qc__closest_hint(qc_ctx *ctx, const char *wanted, const void *names, int64_t n,
+                          size_t stride);
 
 /* --- parameters ------------------------------------------------------------------------------- */
 

@@ -6,21 +6,16 @@
 
 /* --- parse ------------------------------------------------------------------------------------ */
 
-static qc_status refuse_key(qc_ctx *ctx, const char *key, const char *const *known, size_t n,
-                            const char *where) {
-    const char *closest = qc__closest_name(key, known, n);
-    return qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "pipeline: unknown key '%.64s' in %s%s%s%s", key,
-                    where, closest ? " (closest: '" : "", closest ? closest : "",
-                    closest ? "')" : "");
-}
-
 static qc_status check_keys(qc_ctx *ctx, json_t *object, const char *const *known, size_t n,
                             const char *where) {
     for (void *it = json_object_iter(object); it; it = json_object_iter_next(object, it)) {
         const char *key = json_object_iter_key(it);
         size_t k = 0;
         while (k < n && strcmp(known[k], key) != 0) k++;
-        if (k == n) return refuse_key(ctx, key, known, n, where);
+        if (k == n)
+            return qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "pipeline: unknown key '%.64s' in %s%s", key,
+                            where,
+                            qc__closest_hint(ctx, key, known, (int64_t)n, sizeof *known).text);
     }
     return QC_OK;
 }

@@ -38,16 +38,8 @@ void *qc__params_create(qc_ctx *ctx, const qc_stage *stage) {
 int32_t qc__params_find(qc_ctx *ctx, const qc_stage *stage, const char *step, const char *name) {
     for (uint32_t i = 0; i < stage->n_params; i++)
         if (strcmp(stage->params[i].name, name) == 0) return (int32_t)i;
-    const char **names = QC__NEW(ctx, const char *, stage->n_params);
-    if (!names) return -1;
-    for (uint32_t i = 0; i < stage->n_params; i++) names[i] = stage->params[i].name;
-    const char *closest = qc__closest_name(name, names, stage->n_params);
-    qc__free(names);
-    if (closest)
-        qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "unknown parameter '%s' of stage '%s' (closest: '%s')",
-                 name, step, closest);
-    else
-        qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "unknown parameter '%s' of stage '%s'", name, step);
+    qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "unknown parameter '%.100s' of stage '%s'%s", name, step,
+             qc__closest_hint(ctx, name, stage->params, stage->n_params, sizeof(qc_param)).text);
     return -1;
 }
 

@@ -95,13 +95,8 @@ static qc__step *need_step(qc_pipeline *pipeline, const char *step) {
     const int64_t i = qc__pipeline_find(pipeline, step);
     if (i >= 0) return &pipeline->step[i];
     qc_ctx *ctx = pipeline->registry->ctx;
-    const char **names = QC__NEW(ctx, const char *, pipeline->n);
-    if (!names) return NULL;
-    for (int64_t k = 0; k < pipeline->n; k++) names[k] = pipeline->step[k].name;
-    const char *closest = qc__closest_name(step, names, (size_t)pipeline->n);
-    qc__free(names);
-    qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "the pipeline has no step '%.100s'%s%s%s", step,
-             closest ? " (closest: '" : "", closest ? closest : "", closest ? "')" : "");
+    qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "the pipeline has no step '%.100s'%s", step,
+             qc__closest_hint(ctx, step, pipeline->step, pipeline->n, sizeof(qc__step)).text);
     return NULL;
 }
 
@@ -133,14 +128,10 @@ static qc_status set_wire(qc_ctx *ctx, qc__step *step, const char *port, const c
     const qc_stage *stage = step->stage;
     uint32_t i = 0;
     while (i < stage->n_in && strcmp(stage->in[i].name, port) != 0) i++;
-    if (i == stage->n_in) {
-        const char *closest = NULL; /* few ports: one name at a time */
-        for (uint32_t k = 0; k < stage->n_in && !closest; k++)
-            closest = qc__closest_name(port, &stage->in[k].name, 1);
-        return qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "step '%s' has no input '%.64s'%s%s%s",
-                        step->name, port, closest ? " (closest: '" : "", closest ? closest : "",
-                        closest ? "')" : "");
-    }
+    if (i == stage->n_in)
+        return qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "step '%s' has no input '%.64s'%s", step->name,
+                        port,
+                        qc__closest_hint(ctx, port, stage->in, stage->n_in, sizeof(qc_port)).text);
     char *copy = source ? qc__copy_text(ctx, source) : NULL;
     if (source && !copy) return QC_ERR_NOMEM;
     qc__free(step->wire[i]);

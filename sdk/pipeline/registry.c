@@ -82,13 +82,9 @@ qc_status qc_registry_find(qc_registry *registry, const char *id, const qc_stage
         return QC_OK;
     }
     const char **names = QC__NEW(registry->ctx, const char *, registry->n);
-    if (!names) return QC_ERR_NOMEM;
-    for (int64_t k = 0; k < registry->n; k++) names[k] = registry->stage[k]->id;
-    const char *closest = qc__closest_name(id, names, (size_t)registry->n);
+    for (int64_t k = 0; names && k < registry->n; k++) names[k] = registry->stage[k]->id;
+    const qc__hint hint =
+        qc__closest_hint(registry->ctx, id, names, names ? registry->n : 0, sizeof *names);
     qc__free(names);
-    if (closest)
-        return qc__fail(registry->ctx, QC_ERR_NOT_FOUND, -1,
-                        "unknown stage '%.100s' (closest: '%s')", id, closest);
-    return qc__fail(registry->ctx, QC_ERR_NOT_FOUND, -1,
-                    "unknown stage '%.100s'; see the list of registered stages", id);
+    return qc__fail(registry->ctx, QC_ERR_NOT_FOUND, -1, "unknown stage '%.100s'%s", id, hint.text);
 }

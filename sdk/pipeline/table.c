@@ -35,6 +35,18 @@ char *qc__copy_text(qc_ctx *ctx, const char *text) {
     return copy;
 }
 
+qc__hint qc__closest_hint(qc_ctx *ctx, const char *wanted, const void *names, int64_t n,
+                          size_t stride) {
+    qc__hint hint = {""};
+    const char **list = QC__NEW(ctx, const char *, n);
+    for (int64_t i = 0; list && i < n; i++)
+        memcpy(&list[i], (const char *)names + (size_t)i * stride, sizeof *list);
+    const char *closest = list ? qc__closest_name(wanted, list, (size_t)n) : NULL;
+    if (closest) snprintf(hint.text, sizeof hint.text, " (closest: '%s')", closest);
+    qc__free(list);
+    return hint;
+}
+
 /* n structs of `from` bytes each -> n structs of `to` bytes, missing members zero. */
 static void *copy_array(qc_ctx *ctx, qc__arena *arena, const void *array, uint32_t n, size_t from,
                         size_t to) {
