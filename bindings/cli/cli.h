@@ -13,8 +13,7 @@
 
 enum { EXIT_DONE = 0, EXIT_FAILED = 1, EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_INTERRUPTED = 130 };
 
-/* --- messages: one line each on stderr
- * ------------------------------------------------------------ */
+/* --- messages: one line each on stderr ----------------------------------------------------- */
 
 /* "quadcover: error: ..."; returns status. */
 int cli_error(int status, const char *format, ...) CLI_PRINTF(2, 3);
@@ -26,8 +25,7 @@ int cli_usage_error(qc_ctx *ctx, const char *prefix);
  * EXIT_INTERRUPTED, or EXIT_INPUT when the data are to blame. prefix (may be NULL): the file. */
 int cli_context_error(qc_ctx *ctx, const char *prefix, int fallback);
 
-/* --- arguments (popt)
- * ------------------------------------------------------------------------------ */
+/* --- arguments (popt) ---------------------------------------------------------------------- */
 
 enum { CLI_FLAG, CLI_TEXT, CLI_REAL, CLI_INTEGER, CLI_CHOICE, CLI_LIST };
 
@@ -62,8 +60,7 @@ void cli_arguments_free(cli_arguments *arguments);
 /* Closest of n names by edit distance; NULL when none is near. */
 const char *cli_closest(const char *name, const char *const *names, size_t n);
 
-/* --- sessions: context, progress, interruption
- * ----------------------------------------------------- */
+/* --- sessions: context, progress, interruption --------------------------------------------- */
 
 enum { CLI_PROGRESS_AUTO = 0, CLI_PROGRESS_PLAIN, CLI_PROGRESS_NONE };
 extern const char *const cli_progress_names[];
@@ -110,8 +107,7 @@ int cli_session_error(cli_session *session, const char *prefix, int fallback);
 bool cli_interrupted(void);
 double cli_seconds(void);
 
-/* --- files
- * ----------------------------------------------------------------------------------------- */
+/* --- files --------------------------------------------------------------------------------- */
 
 /* EXIT_DONE when a file can be made at path (NULL and "-" are fine), else an error message. */
 int cli_check_writable(const char *path);
@@ -120,8 +116,7 @@ int cli_write_text(const char *path, const char *text);
 /* Reads a mesh; EXIT_INPUT on failure. */
 int cli_read_mesh(cli_session *session, const char *path, qc_polygon_mesh **out);
 
-/* --- pipelines
- * -------------------------------------------------------------------------------------- */
+/* --- pipelines ----------------------------------------------------------------------------- */
 
 /* Registry with the plugins of the list and of QC_PLUGIN_PATH. */
 int cli_registry(qc_ctx *ctx, const cli_list *plugins, qc_registry **out);
@@ -132,8 +127,7 @@ int cli_pipeline(qc_ctx *ctx, qc_registry *registry, const char *file,
                  const qc_default_pipeline_options *options, const cli_list *settings,
                  qc_pipeline **out);
 
-/* --- figures
- * ---------------------------------------------------------------------------------------- */
+/* --- figures ------------------------------------------------------------------------------- */
 
 typedef struct cli_times {
     double read, write, total;
@@ -148,8 +142,7 @@ typedef struct cli_figures {
 } cli_figures;
 cli_figures cli_report_figures(const qc_report *report);
 
-/* --- commands: argv[0] is the command's name
- * -------------------------------------------------------- */
+/* --- commands: argv[0] is the command's name ----------------------------------------------- */
 
 int cli_remesh(int argc, const char **argv);
 int cli_extract(int argc, const char **argv);
