@@ -2,8 +2,8 @@
  * to boundaries which are not aligned, and around holes smaller than a cell, squares are dropped. */
 #include "sdk/map/extract_internal.h"
 
-/* The side after `port` of the cell on its left: to the other end, then the next port clockwise. */
-static int32_t next_side(const qc__ports *p, int32_t port) {
+/* To the other end, then the next port clockwise. */
+int32_t qc__next_side(const qc__ports *p, int32_t port) {
     const int32_t mate = p->mate[port];
     if (mate < 0) return -1;
     const int32_t id = p->vertex[mate];
@@ -57,12 +57,13 @@ static bool meets_square(qc__point a, qc__point b, int64_t unit) {
     return left > 0 && right > 0;
 }
 
-/* Visits all faces which meet the open square left of `port`; *clean = no boundary edge does. */
-static qc_status flood_cell(flood *f, int32_t port, bool *clean) {
+/* Visits all faces which meet the open square left of `port`; *boundary = a boundary halfedge which does,
+ * -1 = none. */
+static qc_status flood_cell(flood *f, int32_t port, int32_t *boundary) {
     const qc_grid_map *g = f->ports->lattice->g;
     const int64_t unit = (int64_t)1 << g->bits;
     f->n = 0;
-    *clean = true;
+    *boundary = -1;
     if (!push(f, (visit){f->ports->face[port], -1, qc__port_point(f->ports, port),
                          f->ports->dir[port]}))
         return QC_ERR_NOMEM;
@@ -77,7 +78,7 @@ static qc_status flood_cell(flood *f, int32_t port, bool *clean) {
             const int32_t h = 3 * v.face + k;
             if (!meets_square(corner[(k + 1) % 3], corner[(k + 2) % 3], unit)) continue;
             if (g->mesh->twin[h] < 0) {
-                *clean = false;
+                *boundary = h;
                 return QC_OK;
             }
             const visit w = {g->mesh->twin[h] / 3, -1, qc__grid_transition(g, h, v.at),
@@ -98,8 +99,19 @@ static qc_status not_closed(qc_ctx *ctx, const qc__ports *p, int32_t port) {
                     (int)p->uv[2 * (int64_t)port + 1]);
 }
 
+static qc_status refuse(qc_ctx *ctx, qc__cells *cells, int64_t *capacity, int32_t port,
+                        int32_t boundary) {
+    if (!qc__reserve(ctx, (void **)&cells->refused, capacity, cells->n_refused + 1,
+                     2 * sizeof(int32_t)))
+        return QC_ERR_NOMEM;
+    cells->refused[2 * cells->n_refused] = port;
+    cells->refused[2 * cells->n_refused++ + 1] = boundary;
+    return QC_OK;
+}
+
 static qc_status collect(qc_ctx *ctx, const qc__ports *p, flood *f, qc__cells *cells) {
     const bool closed = p->lattice->g->mesh->n_boundary_edges == 0;
+    int64_t capacity = 0;
     for (int32_t port = 0; port < p->n; port++) {
         if (port % 1024 == 0 && !qc__progress(ctx, 0.7 + 0.15 * port / p->n))
             return QC_ERR_CANCELLED;
@@ -107,7 +119,7 @@ static qc_status collect(qc_ctx *ctx, const qc__ports *p, flood *f, qc__cells *c
         int32_t side[5] = {port, -1, -1, -1, -1};
         bool lowest = true;
         for (int i = 0; i < 4 && side[i] >= 0; i++) {
-            side[i + 1] = next_side(p, side[i]);
+            side[i + 1] = qc__next_side(p, side[i]);
             lowest &= side[i] >= port;
         }
         if (side[4] != port) {
@@ -115,10 +127,11 @@ static qc_status collect(qc_ctx *ctx, const qc__ports *p, flood *f, qc__cells *c
             continue;
         }
         if (!lowest) continue; /* was refused before */
-        bool clean = true;
-        const qc_status status = closed ? QC_OK : flood_cell(f, port, &clean);
+        int32_t boundary = -1;
+        qc_status status = closed ? QC_OK : flood_cell(f, port, &boundary);
+        if (status == QC_OK && boundary >= 0) status = refuse(ctx, cells, &capacity, port, boundary);
         if (status != QC_OK) return status;
-        if (!clean) continue;
+        if (boundary >= 0) continue;
         for (int i = 0; i < 4; i++) {
             cells->port[4 * (int64_t)cells->n + i] = side[i];
             cells->left[side[i]] = cells->n;
@@ -152,5 +165,6 @@ qc_status qc__cells_create(qc_ctx *ctx, const qc__ports *ports, qc__cells *out) 
 void qc__cells_free(qc__cells *cells) {
     qc__free(cells->port);
     qc__free(cells->left);
+    qc__free(cells->refused);
     *cells = (qc__cells){0};
 }

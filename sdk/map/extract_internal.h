@@ -53,6 +53,8 @@ static inline qc__point qc__port_point(const qc__ports *p, int32_t port) {
 
 /* Fills in mate by exact tracing (extract_trace.c). On a mesh without boundary an unmatched port is FAILED. */
 qc_status qc__ports_trace(qc_ctx *ctx, qc__ports *ports);
+/* The boundary halfedge at which the isoline of an unmatched port leaves the surface, -1 = none. */
+int32_t qc__port_exit(const qc__ports *ports, int32_t port);
 
 /* --- cells (extract_cells.c) ----------------------------------------------------------------------- */
 
@@ -61,12 +63,20 @@ typedef struct qc__cells {
     int32_t n;
     int32_t *port; /* 4 n: ports along the sides, counter-clockwise, the lowest first               */
     int32_t *left; /* ports->n: cell left of a port, -1 = none                                       */
+    int64_t n_refused;
+    int32_t *refused; /* 2 n_refused: lowest port of a square with boundary inside, halfedge of it   */
 } qc__cells;
+/* The side after `port` of the cell on its left; -1 = the isoline or the sector ends at the boundary. */
+int32_t qc__next_side(const qc__ports *ports, int32_t port);
 qc_status qc__cells_create(qc_ctx *ctx, const qc__ports *ports, qc__cells *out);
 void qc__cells_free(qc__cells *cells);
 /* On meshes with boundary: keeps the largest edge-connected set of cells of each component. FAILED when the rest is
  * no copy of the component (extract_keep.c). */
 qc_status qc__cells_keep(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells);
+/* Two boundary loops which the kept cells do not separate, by a vertex of each; -1 = there are none
+ * (extract_gaps.c). */
+qc_status qc__cells_merged_loops(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
+                                 int32_t vertex[2]);
 
 /* --- result (extract_quads.c) ----------------------------------------------------------------------- */
 

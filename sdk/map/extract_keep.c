@@ -102,14 +102,20 @@ static qc_status verify(qc_ctx *ctx, const qc__ports *p, const qc__cells *c, int
                         int32_t *excess) {
     const qc_mesh *m = p->lattice->g->mesh;
     compare_euler(p, c, vertex, excess);
-    for (int32_t i = 0; i < m->n_components; i++)
-        if (excess[i] != 0)
-            return qc__fail(ctx, QC_ERR_FAILED, first_face(m, i),
-                            "the quads of component %d (face %d ...) differ from it by %d in the "
-                            "Euler characteristic: a hole, neck or handle is narrower than a "
-                            "quad; try a finer density",
-                            (int)i, (int)first_face(m, i), (int)excess[i]);
-    return QC_OK;
+    int32_t i = 0, merged[2];
+    while (i < m->n_components && excess[i] == 0) i++;
+    if (i == m->n_components) return QC_OK;
+    const qc_status status = qc__cells_merged_loops(ctx, p, c, merged);
+    if (status != QC_OK) return status;
+    if (merged[0] >= 0)
+        return qc__fail(ctx, QC_ERR_FAILED, merged[0],
+                        "the boundary loops through vertices %d and %d come closer than a quad "
+                        "and would merge; try a finer density",
+                        (int)merged[0], (int)merged[1]);
+    return qc__fail(ctx, QC_ERR_FAILED, first_face(m, i),
+                    "the quads of component %d (face %d ...) differ from it by %d in the Euler "
+                    "characteristic: a neck or handle is narrower than a quad; try a finer density",
+                    (int)i, (int)first_face(m, i), (int)excess[i]);
 }
 
 qc_status qc__cells_keep(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells) {

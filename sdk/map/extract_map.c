@@ -15,9 +15,9 @@ static qc_status check_map(qc_ctx *ctx, const qc_grid_map *g) {
                          (int)t);
     }
     return qc__fail(ctx, QC_ERR_FAILED, g->first_flipped,
-                    "map %s at %d faces (first: face %s%s); try a finer density or run qc.untangle "
+                    "map %s at %d face%s (first: face %s%s); try a finer density or run qc.untangle "
                     "before",
-                    g->n_flipped > 0 ? "folds over" : "is degenerate", (int)n, list,
+                    g->n_flipped > 0 ? "folds over" : "is degenerate", (int)n, n == 1 ? "" : "s", list,
                     n > named ? " ..." : "");
 }
 

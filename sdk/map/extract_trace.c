@@ -7,6 +7,7 @@ typedef struct step {
     int32_t face;
     qc__point from, to;
     int d;
+    int32_t exit; /* boundary halfedge at which it left the surface                                 */
 } step;
 
 /* Sign of the corner's side of the line: positive = left. */
@@ -18,7 +19,10 @@ static int side_of(const qc_grid_map *g, const step *s, int32_t c) {
 
 /* Moves the step into the chart across halfedge h; false on the boundary. */
 static bool cross_edge(const qc_grid_map *g, step *s, int32_t h) {
-    if (g->mesh->twin[h] < 0) return false;
+    if (g->mesh->twin[h] < 0) {
+        s->exit = h;
+        return false;
+    }
     s->from = qc__grid_transition(g, h, s->from);
     s->to = qc__grid_transition(g, h, s->to);
     s->d = (s->d + qc__grid_rotation(g, h)) & 3;
@@ -75,15 +79,23 @@ static int32_t arrive(const qc__ports *p, step s) {
     return cross_edge(g, &s, h) ? qc__port_find(p, id, s.face, (s.d + 2) & 3) : -1;
 }
 
-static int32_t trace(const qc__ports *p, int32_t port, int64_t limit) {
+/* From a port to the face which holds the next integer point; false when the line leaves the surface. */
+static bool walk(const qc__ports *p, int32_t port, step *s) {
     const qc_grid_map *g = p->lattice->g;
     const int64_t unit = (int64_t)1 << g->bits;
-    step s = {.face = p->face[port], .from = qc__port_point(p, port), .d = p->dir[port]};
-    s.to = qc__plus(s.from, qc__turn((qc__point){unit, 0}, s.d));
+    int64_t limit = 4 * (int64_t)g->mesh->n_faces + 16;
+    *s = (step){.face = p->face[port], .from = qc__port_point(p, port), .d = p->dir[port],
+                .exit = -1};
+    s->to = qc__plus(s->from, qc__turn((qc__point){unit, 0}, s->d));
     int k;
-    while (qc__locate(g, s.face, s.to, &k) == QC__OUTSIDE)
-        if (limit-- <= 0 || !advance(g, &s)) return -1;
-    return arrive(p, s);
+    while (qc__locate(g, s->face, s->to, &k) == QC__OUTSIDE)
+        if (limit-- <= 0 || !advance(g, s)) return false;
+    return true;
+}
+
+int32_t qc__port_exit(const qc__ports *p, int32_t port) {
+    step s;
+    return walk(p, port, &s) ? -1 : s.exit;
 }
 
 static qc_status unmatched(qc_ctx *ctx, const qc__ports *p, int32_t port) {
@@ -96,12 +108,12 @@ static qc_status unmatched(qc_ctx *ctx, const qc__ports *p, int32_t port) {
 
 qc_status qc__ports_trace(qc_ctx *ctx, qc__ports *p) {
     const qc_mesh *m = p->lattice->g->mesh;
-    const int64_t limit = 4 * (int64_t)m->n_faces + 16;
     for (int32_t port = 0; port < p->n; port++) {
         if (port % 4096 == 0 && !qc__progress(ctx, 0.3 + 0.4 * port / p->n))
             return QC_ERR_CANCELLED;
         if (p->mate[port] >= 0) continue;
-        const int32_t mate = trace(p, port, limit);
+        step s;
+        const int32_t mate = walk(p, port, &s) ? arrive(p, s) : -1;
         if (mate < 0 && m->n_boundary_edges > 0) continue;
         if (mate < 0 || mate == port || p->mate[mate] >= 0) return unmatched(ctx, p, port);
         p->mate[port] = mate;

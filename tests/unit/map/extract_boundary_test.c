@@ -113,7 +113,36 @@ static void merging_holes_are_refused(void **state) {
     const int holes[][4] = {{17, 17, 19, 19}, {21, 21, 23, 23}};
     maps_list l = plane_with_holes(10, 4, 0, 2, holes, &r);
     assert_int_equal(extract(ctx, &l, -1, 3), QC_ERR_FAILED);
-    assert_non_null(strstr(qc_ctx_error(ctx)->text, "narrower than a quad"));
+    assert_non_null(strstr(qc_ctx_error(ctx)->text, "the boundary loops through vertices"));
+    /* of three holes the two which merge are named: the first one is far away */
+    const int three[][4] = {{5, 5, 6, 6}, {17, 29, 18, 30}, {21, 29, 22, 30}};
+    l = plane_with_holes(10, 4, 0, 3, three, &r);
+    const int32_t n = 41 * 29 + 17; /* vertices before the second hole, none was dropped yet */
+    assert_int_equal(extract(ctx, &l, -1, 4), QC_ERR_FAILED);
+    assert_in_range(qc_ctx_error(ctx)->where, n - 41, n + 41);
+    /* a hole next to the outer boundary */
+    const int outer[][4] = {{0, 17, 3, 19}, {5, 17, 6, 18}};
+    l = plane_with_holes(10, 4, 0, 2, outer, &r);
+    assert_int_equal(extract(ctx, &l, -1, 2), QC_ERR_FAILED);
+    assert_non_null(strstr(qc_ctx_error(ctx)->text, "the boundary loops through vertices"));
+}
+
+/* A handle whose tube is cut by a slot shorter than its girth: no loops merge, but a handle is lost. */
+static void lost_handles_are_refused(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {28};
+    const double a[2] = {6, 0}, b[2] = {0, 9};
+    maps_list l = maps_torus(36, a, b, 0, &r); /* 6 x 4 squares a cell */
+    int32_t kept = 0;
+    for (int32_t t = 0; t < l.n_faces; t++) { /* all but 5 squares of a ring of 36 */
+        if (t / 2 / 36 == 2 && t / 2 % 36 < 31) continue;
+        memmove(l.face + 3 * kept, l.face + 3 * t, 3 * sizeof *l.face);
+        memmove(l.uv + 6 * kept, l.uv + 6 * t, 6 * sizeof *l.uv);
+        kept++;
+    }
+    l.n_faces = kept;
+    assert_int_equal(extract(ctx, &l, -1, 1), QC_ERR_FAILED);
+    assert_non_null(strstr(qc_ctx_error(ctx)->text, "a neck or handle is narrower than a quad"));
 }
 
 static void narrow_necks(void **state) {
@@ -166,6 +195,7 @@ int main(void) {
         cmocka_unit_test(holes_match_the_reference),
         cmocka_unit_test(turned_planes_keep_their_holes),
         cmocka_unit_test(merging_holes_are_refused),
+        cmocka_unit_test(lost_handles_are_refused),
         cmocka_unit_test(narrow_necks),
         cmocka_unit_test(pinched_vertices_are_split),
         cmocka_unit_test(too_small_pieces_are_refused),
