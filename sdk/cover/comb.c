@@ -1,5 +1,5 @@
-/* Combing: a gauge of the faces in which the matching vanishes on a spanning tree of the dual graph. What
- * is left on the other edges generates the holonomy group. */
+/* Combing: a gauge of the faces in which the matching vanishes on a spanning tree of the dual
+ * graph. What is left on the other edges generates the holonomy group. */
 #include <qc/cover.h>
 
 #include "sdk/base/internal.h"

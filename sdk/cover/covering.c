@@ -1,8 +1,8 @@
-/* The covering as a mesh of its own (Kaelberer 2013, section 3.2.2): four copies of every face, glued by
- * the matching; one vertex per closed cycle (or, on the boundary, fan) of faces.
+/* The covering as a mesh of its own (Kaelberer 2013, section 3.2.2): four copies of every face,
+ * glued by the matching; one vertex per closed cycle (or, on the boundary, fan) of faces.
  *
- * Twins are carried over from the view and never searched by end points: between two branch points of odd
- * shift four different edges join the same two vertices. */
+ * Twins are carried over from the view and never searched by end points: between two branch points
+ * of odd shift four different edges join the same two vertices. */
 #include <qc/cover.h>
 
 #include "sdk/base/internal.h"
@@ -24,7 +24,9 @@ static void covering_destroy(qc_object *object) {
 }
 
 /* Corner or halfedge above c on a layer. */
-static int32_t above(int32_t c, int32_t layer) { return 3 * (4 * (c / 3) + layer) + c % 3; }
+static int32_t above(int32_t c, int32_t layer) {
+    return 3 * (4 * (c / 3) + layer) + c % 3;
+}
 
 static int32_t *lift_twins(qc_ctx *ctx, const qc_cover *cover) {
     const qc_mesh *m = cover->mesh;
@@ -36,7 +38,8 @@ static int32_t *lift_twins(qc_ctx *ctx, const qc_cover *cover) {
     return twin;
 }
 
-/* Numbers the vertices above v, starting with n; below[] gets v for each. Returns the next number. */
+/* Numbers the vertices above v, starting with n; below[] gets v for each. Returns the next number.
+ */
 static int32_t lift_vertex(const qc_cover *cover, int32_t v, int32_t n, int32_t *face_vertex,
                            int32_t *below) {
     const qc_mesh *m = cover->mesh;
@@ -116,4 +119,6 @@ qc_status qc_cover_mesh(qc_ctx *ctx, const qc_cover *cover, qc_mesh **out, int32
     return QC_OK;
 }
 
-void qc_cover_free_array(void *array) { qc__free(array); }
+void qc_cover_free_array(void *array) {
+    qc__free(array);
+}

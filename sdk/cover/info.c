@@ -1,15 +1,16 @@
-/* Counts of the covering: vertices, components, genus (Riemann-Hurwitz, Lemma 3.5 of Kaelberer 2013).
+/* Counts of the covering: vertices, components, genus (Riemann-Hurwitz, Lemma 3.5 of Kaelberer
+ * 2013).
  *
  * A vertex of shift 0 has four vertices above it, of shift 2 two, of odd shift one, hence
  *     chi~ = 4 chi - 2 b_even - 3 b_odd,   sum of genera = components - chi~ / 2,
- * so 4 g + b_even + 3/2 b_odd - 3 when the covering is connected. (The thesis prints 1/2 b_even there;
- * its own count of 4 g + b_odd - 2 asymmetric loops needs b_even.) */
+ * so 4 g + b_even + 3/2 b_odd - 3 when the covering is connected. (The thesis prints 1/2 b_even
+ * there; its own count of 4 g + b_odd - 2 asymmetric loops needs b_even.) */
 #include <qc/cover.h>
 
 #include "sdk/base/internal.h"
 
-/* Subgroups of Z/4 as the smallest positive turn they contain, 4 for the trivial one: this is also the
- * number of components of the covering. */
+/* Subgroups of Z/4 as the smallest positive turn they contain, 4 for the trivial one: this is also
+ * the number of components of the covering. */
 static int32_t join(int32_t group, int32_t turn) {
     if (turn & 1) return 1;
     return turn == 2 && group == 4 ? 2 : group;

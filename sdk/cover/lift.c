@@ -23,8 +23,9 @@ static int32_t shared_halfedge(const qc_mesh *m, int32_t a, int32_t b) {
 static qc_status check_path(qc_ctx *ctx, const qc_mesh *m, int32_t n, const int32_t *path) {
     for (int32_t i = 0; i < n; i++)
         if (path[i] < 0 || path[i] >= m->n_faces)
-            return qc__fail(ctx, QC_ERR_ARGUMENT, i, "entry %d of the path is face %d, valid are 0 to %d",
-                            (int)i, (int)path[i], (int)m->n_faces - 1);
+            return qc__fail(ctx, QC_ERR_ARGUMENT, i,
+                            "entry %d of the path is face %d, valid are 0 to %d", (int)i,
+                            (int)path[i], (int)m->n_faces - 1);
     for (int32_t i = 0; i + 1 < n; i++)
         if (shared_halfedge(m, path[i], path[i + 1]) < 0)
             return qc__fail(ctx, QC_ERR_ARGUMENT, i,

@@ -1,5 +1,5 @@
-/* Layer shifts at vertices and the gauge of vertex functions (Kaelberer 2013, section 3.2.2: the three
- * cases of a cycle of faces around a vertex). */
+/* Layer shifts at vertices and the gauge of vertex functions (Kaelberer 2013, section 3.2.2: the
+ * three cases of a cycle of faces around a vertex). */
 #include <qc/cover.h>
 
 #include "sdk/base/internal.h"

@@ -1,5 +1,5 @@
-/* Assembly in linear time: couplings are bucketed by row, then the rows are dealt out to the columns in
- * order, which leaves each column sorted and equal entries adjacent. */
+/* Assembly in linear time: couplings are bucketed by row, then the rows are dealt out to the
+ * columns in order, which leaves each column sorted and equal entries adjacent. */
 #include "sdk/dec/assemble.h"
 
 typedef struct assembly {
@@ -9,10 +9,10 @@ typedef struct assembly {
     const int8_t *turn;
     double scale;
     int32_t n;
-    int64_t *start;   /* n + 1: couplings of row i with later columns                                */
-    int32_t *column;  /* by row                                                                     */
+    int64_t *start;  /* n + 1: couplings of row i with later columns  */
+    int32_t *column; /* by row */
     qc_complex *value;
-    double *diagonal; /* n                                                                          */
+    double *diagonal; /* n */
 } assembly;
 
 /* The coupling across corner k of face t: local values i, j. False when one of them is fixed. */
@@ -39,8 +39,7 @@ static void add_diagonal(assembly *a) {
     for (int32_t h = 0; h < 3 * a->mesh->n_faces; h++) {
         const int32_t i = a->unknown[a->entity[h]];
         if (i >= 0)
-            a->diagonal[i] +=
-                a->scale * (a->cotangent[qc_next(h)] + a->cotangent[qc_prev(h)]);
+            a->diagonal[i] += a->scale * (a->cotangent[qc_next(h)] + a->cotangent[qc_prev(h)]);
     }
 }
 

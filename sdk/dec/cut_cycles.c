@@ -1,5 +1,5 @@
-/* Generators of the homology of a surface (relative to its boundary) from its cut graph (Kaelberer 2013,
- * sections 1.2.6 and 1.3). */
+/* Generators of the homology of a surface (relative to its boundary) from its cut graph (Kaelberer
+ * 2013, sections 1.2.6 and 1.3). */
 #include "sdk/dec/cut_cycles.h"
 
 #include "sdk/mesh/internal.h"
@@ -80,8 +80,8 @@ qc_status qc__cut_cycles_create(qc_ctx *ctx, const qc_mesh *m, qc__cut_cycles *o
     c.node = QC__NEW(ctx, int32_t, m->n_vertices);
     c.parent_edge = QC__NEW(ctx, int32_t, m->n_vertices);
     c.generator = QC__NEW(ctx, int32_t, m->n_edges);
-    const bool room = cut && tree && start && adjacent && work && c.node && c.parent_edge &&
-                      c.generator;
+    const bool room =
+        cut && tree && start && adjacent && work && c.node && c.parent_edge && c.generator;
     qc_status status = room ? number_nodes(ctx, m, c.node) : QC_ERR_NOMEM;
     if (status == QC_OK) status = qc_mesh_cut_graph(ctx, m, NULL, NULL, cut);
     if (status == QC_OK) {

@@ -18,8 +18,7 @@ qc_status qc_form_from_cross(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex 
     (void)ctx;
     for (int32_t t = 0; t < mesh->n_faces; t++) {
         const double _Complex conj_x = (scale ? scale[t] : 1) * conj(qc__load(x[t]));
-        for (int k = 0; k < 3; k++)
-            z[3 * t + k] = qc__store(conj_x * qc__load(edge[3 * t + k]));
+        for (int k = 0; k < 3; k++) z[3 * t + k] = qc__store(conj_x * qc__load(edge[3 * t + k]));
     }
     return QC_OK;
 }

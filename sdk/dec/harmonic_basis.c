@@ -1,10 +1,11 @@
-/* Harmonic fields with given jumps (Kaelberer 2013, section 1.2.6): H = Sigma - (Sigma)_P, where Sigma is
- * the gradient of a function which jumps by a conserved flow across the cut graph. Since the two ends of
- * an edge jump alike, Sigma has no curl*, whatever the values at single vertices are (1.13). */
+/* Harmonic fields with given jumps (Kaelberer 2013, section 1.2.6): H = Sigma - (Sigma)_P, where
+ * Sigma is the gradient of a function which jumps by a conserved flow across the cut graph. Since
+ * the two ends of an edge jump alike, Sigma has no curl*, whatever the values at single vertices
+ * are (1.13). */
 #include "sdk/dec/cut_cycles.h"
 
-/* Values at the corners of v: 0 at vertex_corner, then the jumps met counter-clockwise. Crossing an edge
- * from its left to its right subtracts the flow. */
+/* Values at the corners of v: 0 at vertex_corner, then the jumps met counter-clockwise. Crossing an
+ * edge from its left to its right subtracts the flow. */
 static void jump_around(const qc_mesh *m, const int32_t *flow, int32_t v, double *f) {
     const int32_t first = m->vertex_corner[v];
     int32_t c = first;

@@ -1,8 +1,8 @@
 /* Discrete Hodge decomposition (Theorem 1.12 of Kaelberer 2013) on a mesh or on its covering.
  *
- * Conforming: Z = grad F + J grad v + H, F at vertices, v at edges. Since J is an isometry with J J = -1,
- * the non-conforming version is the conforming one of J Z, turned back:
- *     J Z = grad F + J grad v + H  =>  Z = grad v + J grad(-F) - J H. */
+ * Conforming: Z = grad F + J grad v + H, F at vertices, v at edges. Since J is an isometry with J J
+ * = -1, the non-conforming version is the conforming one of J Z, turned back: J Z = grad F + J grad
+ * v + H  =>  Z = grad v + J grad(-F) - J H. */
 #include "sdk/dec/internal.h"
 
 static qc_status potential_values(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
@@ -67,8 +67,8 @@ qc_status qc_hodge_decompose(qc_ctx *ctx, const qc_cover *cover, int32_t version
     const qc_mesh *m = cover->mesh;
     const bool conforming = version == QC_HODGE_CONFORMING;
     if (!conforming && version != QC_HODGE_NONCONFORMING)
-        return qc__fail(ctx, QC_ERR_ARGUMENT, version, "version %d of the Hodge decomposition: 0 or 1",
-                        (int)version);
+        return qc__fail(ctx, QC_ERR_ARGUMENT, version,
+                        "version %d of the Hodge decomposition: 0 or 1", (int)version);
     const size_t n = 3 * (size_t)m->n_faces;
     double *cotangent = qc__cotangents(ctx, m);
     qc_complex *p = QC__NEW(ctx, qc_complex, n), *c = QC__NEW(ctx, qc_complex, n);

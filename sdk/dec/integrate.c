@@ -1,5 +1,5 @@
-/* Integration of a curl-free form to a potential by (1.12) of Kaelberer 2013: breadth first over uncut
- * edges, in the combed gauge f' = i^{face_turn} f. */
+/* Integration of a curl-free form to a potential by (1.12) of Kaelberer 2013: breadth first over
+ * uncut edges, in the combed gauge f' = i^{face_turn} f. */
 #include <math.h>
 
 #include "sdk/dec/internal.h"
@@ -8,7 +8,8 @@ static qc_complex combed(const int8_t *face_turn, const qc_complex *z, int32_t h
     return face_turn ? qc_quarter_turn(z[h], face_turn[h / 3]) : z[h];
 }
 
-/* Corner values of face c / 3 from the value at corner c: halfedge k runs from corner k+1 to k+2. */
+/* Corner values of face c / 3 from the value at corner c: halfedge k runs from corner k+1 to k+2.
+ */
 static void spread(const int8_t *face_turn, const qc_complex *z, int32_t c, qc_complex *f) {
     f[qc_next(c)] = qc__add(f[c], combed(face_turn, z, qc_prev(c)));
     f[qc_prev(c)] = qc__sub(f[c], combed(face_turn, z, qc_next(c)));

@@ -53,15 +53,15 @@ void qc__divergence(const qc_mesh *mesh, const double *cotangent, const int8_t *
 /* out = J z; in place allowed. */
 void qc__rotate(const qc_mesh *mesh, const double *cotangent, const qc_complex *z, qc_complex *out);
 
-/* A stiffness matrix with its factor. The factor is that of D A D, D a diagonal of powers of two which
- * brings every diagonal entry of A to [1/2, 2): slivers do not hide small pivots, and nothing is
- * rounded. */
+/* A stiffness matrix with its factor. The factor is that of D A D, D a diagonal of powers of two
+ * which brings every diagonal entry of A to [1/2, 2): slivers do not hide small pivots, and nothing
+ * is rounded. */
 typedef struct qc__system {
-    const qc_stiffness *stiffness; /* borrowed                                                     */
-    int32_t n_elements;            /* length of stiffness->unknown                                 */
-    double *scale;                 /* D                                                            */
-    qc_complex *val;               /* of D A D                                                     */
-    qc_factor *factor;             /* NULL when there is no unknown                                */
+    const qc_stiffness *stiffness; /* borrowed */
+    int32_t n_elements; /* length of stiffness->unknown                                 */
+    double *scale;      /* D                                                            */
+    qc_complex *val;    /* of D A D                                                     */
+    qc_factor *factor;  /* NULL when there is no unknown                                */
 } qc__system;
 /* `element` names the unknowns ("edge", "vertex") in errors: NOT_POSDEF with where = element. */
 qc_status qc__system_create(qc_ctx *ctx, const qc_stiffness *stiffness, int32_t n_elements,

@@ -1,5 +1,5 @@
-/* The locally integrable field closest to a given one: Z^ = Z - J grad v with L* v = r (Kaelberer 2013,
- * (1.9) and (6.1)), and its energy E_D = 1/2 v^H L* v = 1/2 Re(v^H r). */
+/* The locally integrable field closest to a given one: Z^ = Z - J grad v with L* v = r (Kaelberer
+ * 2013, (1.9) and (6.1)), and its energy E_D = 1/2 v^H L* v = 1/2 Re(v^H r). */
 #include "sdk/dec/internal.h"
 
 static qc_status co_potential(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,

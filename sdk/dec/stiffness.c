@@ -1,5 +1,5 @@
-/* The two stiffness matrices of Kaelberer 2013, (1.5) and (3.7), as Hermitian matrices on the mesh below
- * (3.8): which values are unknowns, and their gauge. */
+/* The two stiffness matrices of Kaelberer 2013, (1.5) and (3.7), as Hermitian matrices on the mesh
+ * below (3.8): which values are unknowns, and their gauge. */
 #include "sdk/dec/assemble.h"
 
 void qc_stiffness_free(qc_stiffness *s) {
@@ -46,8 +46,8 @@ static qc_status number_edges(qc_ctx *ctx, const qc_cover *cover, int32_t *unkno
     return QC_OK;
 }
 
-/* Branch points and pinned vertices are fixed, and the first vertex of a component with trivial holonomy
- * where nothing else is. */
+/* Branch points and pinned vertices are fixed, and the first vertex of a component with trivial
+ * holonomy where nothing else is. */
 static qc_status number_vertices(qc_ctx *ctx, const qc_cover *cover, const uint8_t *pinned,
                                  int32_t *unknown, int32_t *n) {
     const qc_mesh *m = cover->mesh;
@@ -85,7 +85,8 @@ qc_status qc_stiffness_edges(qc_ctx *ctx, const qc_cover *cover, const double *c
         status = s->unknown ? number_edges(ctx, cover, s->unknown, &n) : QC_ERR_NOMEM;
     }
     if (status == QC_OK) {
-        for (int32_t h = 0; h < 3 * m->n_faces; h++) turn[h] = (int8_t)(qc__edge_turn(cover, h) & 3);
+        for (int32_t h = 0; h < 3 * m->n_faces; h++)
+            turn[h] = (int8_t)(qc__edge_turn(cover, h) & 3);
         status = qc__assemble(ctx, m, cotangent, 2, m->halfedge_edge, turn, n, s);
     }
     qc__free(turn);
@@ -107,8 +108,7 @@ qc_status qc_stiffness_vertices(qc_ctx *ctx, const qc_cover *cover, const double
         s->unknown = QC__NEW(ctx, int32_t, m->n_vertices);
         status = s->unknown ? number_vertices(ctx, cover, pinned, s->unknown, &n) : QC_ERR_NOMEM;
     }
-    if (status == QC_OK)
-        status = qc__assemble(ctx, m, cotangent, 0.5, m->face_vertex, turn, n, s);
+    if (status == QC_OK) status = qc__assemble(ctx, m, cotangent, 0.5, m->face_vertex, turn, n, s);
     qc__free(turn);
     if (status != QC_OK)
         qc_stiffness_free(s);

@@ -22,9 +22,10 @@ static qc_status name_pivot(qc_ctx *ctx, const qc__system *s, const char *elemen
     const int64_t pivot = qc_ctx_error(ctx)->where;
     for (int32_t i = 0; i < s->n_elements; i++)
         if (s->stiffness->unknown[i] >= 0 && s->stiffness->unknown[i] == pivot)
-            return qc__fail(ctx, QC_ERR_NOT_POSDEF, i,
-                            "the stiffness matrix is singular at %s %d; repair the mesh (faces without area)",
-                            element, (int)i);
+            return qc__fail(
+                ctx, QC_ERR_NOT_POSDEF, i,
+                "the stiffness matrix is singular at %s %d; repair the mesh (faces without area)",
+                element, (int)i);
     return QC_ERR_NOT_POSDEF;
 }
 

@@ -95,8 +95,12 @@ static void test_adjacent_branch_points(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void test_counts(void **state) { (void)state, for_all_covers(counts); }
-static void test_deck(void **state) { (void)state, for_all_covers(deck); }
+static void test_counts(void **state) {
+    (void)state, for_all_covers(counts);
+}
+static void test_deck(void **state) {
+    (void)state, for_all_covers(deck);
+}
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_counts), cmocka_unit_test(test_deck),

@@ -67,8 +67,12 @@ static void combing(qc_ctx *ctx, const surface *s, const qc_cover *cover, int ki
     free(shift);
 }
 
-static void test_shifts(void **state) { (void)state, for_all_covers(shifts_and_turns); }
-static void test_comb(void **state) { (void)state, for_all_covers(combing); }
+static void test_shifts(void **state) {
+    (void)state, for_all_covers(shifts_and_turns);
+}
+static void test_comb(void **state) {
+    (void)state, for_all_covers(combing);
+}
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_shifts), cmocka_unit_test(test_comb)};

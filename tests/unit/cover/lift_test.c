@@ -1,5 +1,5 @@
-/* Lifted paths run along the gluing of the covering; symmetric loops are their own reversal two layers
- * up (Kaelberer 2013, 4.2). */
+/* Lifted paths run along the gluing of the covering; symmetric loops are their own reversal two
+ * layers up (Kaelberer 2013, 4.2). */
 #include "unit/cover/surfaces.h"
 
 enum { STEPS = 40 };
@@ -42,7 +42,9 @@ static void lifts(qc_ctx *ctx, const surface *s, const qc_cover *cover, int kind
     qc_object_release(q);
 }
 
-static void test_lifts(void **state) { (void)state, for_all_covers(lifts); }
+static void test_lifts(void **state) {
+    (void)state, for_all_covers(lifts);
+}
 
 static void test_errors(void **state) {
     (void)state;

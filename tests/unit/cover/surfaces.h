@@ -18,8 +18,12 @@ static inline double random_unit(void) { /* in [0, 1) */
     random_state = random_state * 6364136223846793005u + 1442695040888963407u;
     return (double)(random_state >> 11) / 9007199254740992.0;
 }
-static inline int32_t random_int(int32_t n) { return (int32_t)(random_unit() * n); }
-static inline double random_signed(void) { return 2 * random_unit() - 1; }
+static inline int32_t random_int(int32_t n) {
+    return (int32_t)(random_unit() * n);
+}
+static inline double random_signed(void) {
+    return 2 * random_unit() - 1;
+}
 
 static inline void *new_array(size_t count, size_t size) {
     void *p = calloc(count + 1, size);
@@ -36,8 +40,8 @@ static inline qc_ctx *new_context(void) {
 
 typedef struct surface {
     const char *name;
-    int32_t x, y, z, sub; /* voxels in each direction, subdivision of a voxel                       */
-    const char *mask;     /* x fastest; '#' = solid. z = 0: a flat sheet of cells instead of voxels    */
+    int32_t x, y, z, sub; /* voxels in each direction, subdivision of a voxel */
+    const char *mask; /* x fastest; '#' = solid. z = 0: a flat sheet of cells instead of voxels */
     int32_t genus, boundaries, components;
 } surface;
 
@@ -102,7 +106,11 @@ static inline void add_side(builder *b, const int32_t p[3], int i, int sign) {
 static inline qc_mesh *build_surface(qc_ctx *ctx, const surface *s, double size) {
     const int32_t n[3] = {s->x * s->sub, s->y * s->sub, s->z ? s->z * s->sub : 1};
     const int32_t cells = n[0] * n[1] * n[2], points = (n[0] + 1) * (n[1] + 1) * (n[2] + 1);
-    builder b = {s, 0, 0, NEW_ARRAY(int32_t, points), NEW_ARRAY(int32_t, 36 * cells),
+    builder b = {s,
+                 0,
+                 0,
+                 NEW_ARRAY(int32_t, points),
+                 NEW_ARRAY(int32_t, 36 * cells),
                  NEW_ARRAY(double, 3 * points)};
     for (int32_t i = 0; i < points; i++) b.number[i] = -1;
     for (int32_t i = 0; i < cells; i++) {
@@ -117,8 +125,8 @@ static inline qc_mesh *build_surface(qc_ctx *ctx, const surface *s, double size)
     }
     for (int32_t i = 0; i < 3 * b.n_vertices; i++) b.position[i] *= size;
     qc_mesh *mesh = NULL;
-    assert_int_equal(
-        qc_mesh_create(ctx, b.n_vertices, b.position, b.n_faces, b.face, &mesh), QC_OK);
+    assert_int_equal(qc_mesh_create(ctx, b.n_vertices, b.position, b.n_faces, b.face, &mesh),
+                     QC_OK);
     assert_int_equal(mesh->genus, s->genus);
     assert_int_equal(mesh->n_boundary_loops, s->boundaries);
     assert_int_equal(mesh->n_components, s->components);
@@ -131,8 +139,8 @@ static inline qc_mesh *build_surface(qc_ctx *ctx, const surface *s, double size)
 /* Kinds of matching: the ways a covering can hang together. */
 enum { PLAIN, GAUGE, EVEN, SPARSE, DENSE, N_MATCHINGS };
 
-/* NULL for PLAIN; GAUGE: trivial holonomy in disguise; EVEN: only half turns; SPARSE: few edges; DENSE: all
- * of them, with turns beyond 0..3. */
+/* NULL for PLAIN; GAUGE: trivial holonomy in disguise; EVEN: only half turns; SPARSE: few edges;
+ * DENSE: all of them, with turns beyond 0..3. */
 static inline int8_t *random_matching(const qc_mesh *m, int kind) {
     if (kind == PLAIN) return NULL;
     int8_t *matching = NEW_ARRAY(int8_t, m->n_edges);

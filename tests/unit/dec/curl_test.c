@@ -1,5 +1,5 @@
-/* qc_hodge_remove_curl: no curl is left (1e-12), E_D is the energy of what was taken away, the rest is
- * orthogonal to it, and neither gauge nor the unit of length matters. */
+/* qc_hodge_remove_curl: no curl is left (1e-12), E_D is the energy of what was taken away, the rest
+ * is orthogonal to it, and neither gauge nor the unit of length matters. */
 #include "unit/dec/forms.h"
 
 static void remove_curl(qc_ctx *ctx, const surface *s, const qc_cover *cover, int kind) {
@@ -7,7 +7,8 @@ static void remove_curl(qc_ctx *ctx, const surface *s, const qc_cover *cover, in
     const qc_mesh *m = cover->mesh;
     const int32_t n = 3 * m->n_faces;
     double *cot = cotangents(ctx, m), energy = -1, again = -1;
-    qc_complex *z = random_form(m), *out = NEW_ARRAY(qc_complex, n), *diff = NEW_ARRAY(qc_complex, n);
+    qc_complex *z = random_form(m), *out = NEW_ARRAY(qc_complex, n),
+               *diff = NEW_ARRAY(qc_complex, n);
     qc_complex *v = NEW_ARRAY(qc_complex, m->n_edges), *curl = NEW_ARRAY(qc_complex, m->n_edges);
     assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, out, v, &energy), QC_OK);
     assert_int_equal(qc_form_curl_edges(ctx, cover, out, curl), QC_OK);
@@ -74,10 +75,13 @@ static void test_scale_and_slivers(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void test_remove_curl(void **state) { (void)state, for_all_covers(remove_curl); }
+static void test_remove_curl(void **state) {
+    (void)state, for_all_covers(remove_curl);
+}
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_remove_curl), cmocka_unit_test(test_gauge),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_remove_curl),
+                                       cmocka_unit_test(test_gauge),
                                        cmocka_unit_test(test_scale_and_slivers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Out of memory at any allocation, and cancellation: the status says so, outputs are untouched, nothing
- * leaks. */
+/* Out of memory at any allocation, and cancellation: the status says so, outputs are untouched,
+ * nothing leaks. */
 #include "unit/dec/forms.h"
 
 typedef struct limits {
@@ -40,7 +40,8 @@ static qc_status call(qc_ctx *ctx, int which, const qc_cover *cover, const doubl
     double energy = -1;
     qc_status status = QC_OK;
     if (which == 0) status = qc_hodge_remove_curl(ctx, cover, cot, z, out, v, &energy);
-    if (which == 1) status = qc_hodge_decompose(ctx, cover, QC_HODGE_NONCONFORMING, z, out, NULL, NULL);
+    if (which == 1)
+        status = qc_hodge_decompose(ctx, cover, QC_HODGE_NONCONFORMING, z, out, NULL, NULL);
     if (which == 2) status = qc_hodge_harmonic_basis(ctx, m, &count, &basis);
     if (which == 3) status = qc_cover_mesh(ctx, cover, &q, &below);
     if (which == 4) status = qc_stiffness_vertices(ctx, cover, cot, NULL, &s);
@@ -93,8 +94,12 @@ static void sweep(bool memory) {
     assert_int_equal(l.live, 0);
 }
 
-static void test_memory(void **state) { (void)state, sweep(true); }
-static void test_cancel(void **state) { (void)state, sweep(false); }
+static void test_memory(void **state) {
+    (void)state, sweep(true);
+}
+static void test_cancel(void **state) {
+    (void)state, sweep(false);
+}
 
 /* A face without area whose corners coincide has no stiffness: the vertex or edge is named. */
 static void test_singular(void **state) {

@@ -50,7 +50,8 @@ static inline double largest(int32_t n, const qc_complex *z) {
 
 /* Dense copy of a Hermitian matrix, column-major. */
 static inline double _Complex *dense(const qc_hermitian *A) {
-    double _Complex *D = NEW_ARRAY(double _Complex, (size_t)A->n * (size_t)A->n);
+    const size_t n = (size_t)A->n;
+    double _Complex *D = NEW_ARRAY(double _Complex, n *n);
     for (int32_t j = 0; j < A->n; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
             D[A->row[p] + j * A->n] = number(A->val[p]);

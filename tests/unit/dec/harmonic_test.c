@@ -1,12 +1,12 @@
-/* The harmonic basis: 2 g (+ b - 1) independent real fields without curl* and divergence, fixed by the Hodge
- * projection, with integer periods along closed paths. */
+/* The harmonic basis: 2 g (+ b - 1) independent real fields without curl* and divergence, fixed by
+ * the Hodge projection, with integer periods along closed paths. */
 #include <lapacke.h>
 
 #include "unit/dec/forms.h"
 
 static int32_t gram_rank(const qc_mesh *m, const double *cot, int32_t n, const qc_complex *basis) {
     if (n == 0) return 0;
-    double *G = NEW_ARRAY(double, n * n), *w = NEW_ARRAY(double, n);
+    double *G = NEW_ARRAY(double, n *n), *w = NEW_ARRAY(double, n);
     for (int32_t i = 0; i < n; i++)
         for (int32_t j = 0; j < n; j++)
             G[i + j * n] = qc_form_product(m, cot, basis + 3 * (size_t)m->n_faces * (size_t)i,
@@ -19,8 +19,8 @@ static int32_t gram_rank(const qc_mesh *m, const double *cot, int32_t n, const q
     return r;
 }
 
-/* The jump of the integral of z across every edge of a cut which opens the surface is an integer (the two
- * ends agree since z has no curl). */
+/* The jump of the integral of z across every edge of a cut which opens the surface is an integer
+ * (the two ends agree since z has no curl). */
 static void check_periods(qc_ctx *ctx, const qc_mesh *m, const qc_complex *z) {
     const qc_cover cover = {m, NULL};
     uint8_t *cut = NEW_ARRAY(uint8_t, m->n_edges);
@@ -55,8 +55,7 @@ static void basis(qc_ctx *ctx, const surface *s, const qc_cover *cover, int kind
         const qc_complex *h = z + 3 * (size_t)m->n_faces * (size_t)i;
         const double size = norm(m, cot, h);
         for (int32_t k = 0; k < 3 * m->n_faces; k++) assert_true(h[k].im == 0);
-        assert_int_equal(
-            qc_hodge_decompose(ctx, cover, QC_HODGE_CONFORMING, h, p, c, NULL), QC_OK);
+        assert_int_equal(qc_hodge_decompose(ctx, cover, QC_HODGE_CONFORMING, h, p, c, NULL), QC_OK);
         assert_true(norm(m, cot, p) < 1e-12 * size && norm(m, cot, c) < 1e-12 * size);
         check_periods(ctx, m, h);
     }
@@ -64,7 +63,9 @@ static void basis(qc_ctx *ctx, const surface *s, const qc_cover *cover, int kind
     free(cot), free(p), free(c);
 }
 
-static void test_basis(void **state) { (void)state, for_all_covers(basis); }
+static void test_basis(void **state) {
+    (void)state, for_all_covers(basis);
+}
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_basis)};

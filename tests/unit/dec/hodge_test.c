@@ -1,5 +1,6 @@
-/* Hodge decomposition, both versions: the parts add up, are orthogonal and have the kernels and dimensions of
- * Theorem 1.12; on a covering the harmonic space has complex dimension e - f - v + b. */
+/* Hodge decomposition, both versions: the parts add up, are orthogonal and have the kernels and
+ * dimensions of Theorem 1.12; on a covering the harmonic space has complex dimension e - f - v + b.
+ */
 #include <lapacke.h>
 
 #include "unit/dec/forms.h"
@@ -58,9 +59,9 @@ static void coordinates(const qc_mesh *m, const qc_complex *edge, const qc_compl
 static int32_t rank(int32_t n, int32_t columns, double _Complex *A) {
     double *s = NEW_ARRAY(double, n), *super = NEW_ARRAY(double, n);
     double _Complex none[1];
-    assert_int_equal(LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, columns, A, n, s, none, 1, none,
-                                    1, super),
-                     0);
+    assert_int_equal(
+        LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, columns, A, n, s, none, 1, none, 1, super),
+        0);
     int32_t r = 0;
     while (r < n && r < columns && s[r] > 1e-8 * fmax(1, s[0])) r++;
     free(s), free(super);
@@ -76,7 +77,7 @@ static void dimensions(qc_ctx *ctx, const qc_cover *cover, int version, int32_t 
     qc_complex *edge = NEW_ARRAY(qc_complex, 3 * m->n_faces);
     assert_int_equal(qc_tangent_edges(ctx, m, edge), QC_OK);
     for (int k = 0; k < 3; k++) {
-        A[k] = NEW_ARRAY(double _Complex, n * n);
+        A[k] = NEW_ARRAY(double _Complex, n *n);
         part[k] = NEW_ARRAY(qc_complex, 3 * m->n_faces);
     }
     for (int32_t i = 0; i < n; i++) {
@@ -116,7 +117,8 @@ static void count_dimensions(qc_ctx *ctx, const surface *s, int kind) {
     assert_int_equal(dim[1], vertices);
     assert_int_equal(dim[2], harmonic);
     if (kind == PLAIN && s->boundaries == 0) assert_int_equal(harmonic, 2 * s->genus);
-    if (kind == PLAIN && s->boundaries) assert_int_equal(harmonic, 2 * s->genus + s->boundaries - 1);
+    if (kind == PLAIN && s->boundaries)
+        assert_int_equal(harmonic, 2 * s->genus + s->boundaries - 1);
     /* Half of the symmetric loops (4.1): a complex form counts for two real ones. */
     if (b > 0 && s->boundaries == 0) assert_int_equal(2 * harmonic, info.symmetric_loops);
     free(matching);
@@ -149,10 +151,13 @@ static void test_version(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void test_parts(void **state) { (void)state, for_all_covers(parts); }
+static void test_parts(void **state) {
+    (void)state, for_all_covers(parts);
+}
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts), cmocka_unit_test(test_dimensions),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_parts),
+                                       cmocka_unit_test(test_dimensions),
                                        cmocka_unit_test(test_version)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

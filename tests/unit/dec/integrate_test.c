@@ -9,9 +9,9 @@ typedef struct opened {
 /* Combs the surface cut along a graph through the branch points. */
 static opened open_surface(qc_ctx *ctx, const qc_cover *cover) {
     const qc_mesh *m = cover->mesh;
-    opened o = {NEW_ARRAY(int8_t, m->n_faces),      NEW_ARRAY(int8_t, m->n_edges),
-                NEW_ARRAY(int8_t, 3 * m->n_faces),  NEW_ARRAY(int8_t, m->n_vertices),
-                NEW_ARRAY(uint8_t, m->n_edges),     NEW_ARRAY(uint8_t, m->n_vertices)};
+    opened o = {NEW_ARRAY(int8_t, m->n_faces),     NEW_ARRAY(int8_t, m->n_edges),
+                NEW_ARRAY(int8_t, 3 * m->n_faces), NEW_ARRAY(int8_t, m->n_vertices),
+                NEW_ARRAY(uint8_t, m->n_edges),    NEW_ARRAY(uint8_t, m->n_vertices)};
     assert_int_equal(qc_cover_shifts(ctx, cover, o.shift), QC_OK);
     assert_int_equal(qc_cover_corner_turns(ctx, cover, o.corner_turn), QC_OK);
     for (int32_t v = 0; v < m->n_vertices; v++) o.base[v] = o.shift[v] != 0;
@@ -68,10 +68,13 @@ static void seamless(qc_ctx *ctx, const surface *s, const qc_cover *cover, int k
     assert_int_equal(qc_form_integrate(ctx, cover, o.cut, o.turn, z, f, &residual), QC_OK);
     assert_true(residual < 1e-11);
     for (int32_t e = 0; e < m->n_edges; e++) {
-        const int32_t h = m->edge_halfedge[2 * e], k = m->edge_halfedge[2 * e + 1], r = o.residual[e];
+        const int32_t h = m->edge_halfedge[2 * e], k = m->edge_halfedge[2 * e + 1],
+                      r = o.residual[e];
         if (k < 0) continue;
-        const double _Complex a = number(f[qc_prev(k)]) - number(qc_quarter_turn(f[qc_next(h)], -r));
-        const double _Complex b = number(f[qc_next(k)]) - number(qc_quarter_turn(f[qc_prev(h)], -r));
+        const double _Complex a =
+            number(f[qc_prev(k)]) - number(qc_quarter_turn(f[qc_next(h)], -r));
+        const double _Complex b =
+            number(f[qc_next(k)]) - number(qc_quarter_turn(f[qc_prev(h)], -r));
         assert_true(cabs(a - b) < 1e-11);
         if (!o.cut[e]) assert_true(cabs(a) < 1e-11);
     }
@@ -79,10 +82,15 @@ static void seamless(qc_ctx *ctx, const surface *s, const qc_cover *cover, int k
     close_surface(&o);
 }
 
-static void test_undo(void **state) { (void)state, for_all_covers(undo_gradient); }
-static void test_seamless(void **state) { (void)state, for_all_covers(seamless); }
+static void test_undo(void **state) {
+    (void)state, for_all_covers(undo_gradient);
+}
+static void test_seamless(void **state) {
+    (void)state, for_all_covers(seamless);
+}
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_undo), cmocka_unit_test(test_seamless)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_undo),
+                                       cmocka_unit_test(test_seamless)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

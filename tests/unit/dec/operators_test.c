@@ -1,5 +1,5 @@
-/* Gradients have no curl, divergence and weak curl are adjoint to the gradients, J is an isometry with
- * J J = -1, and curls do not depend on the gauge. */
+/* Gradients have no curl, divergence and weak curl are adjoint to the gradients, J is an isometry
+ * with J J = -1, and curls do not depend on the gauge. */
 #include "unit/dec/forms.h"
 
 static void gradients(qc_ctx *ctx, const surface *s, const qc_cover *cover, int kind) {
@@ -40,9 +40,9 @@ static void gradients(qc_ctx *ctx, const surface *s, const qc_cover *cover, int 
     /* J is an isometry and J J = -1. */
     assert_int_equal(qc_form_rotate(ctx, m, cot, w, g), QC_OK);
     assert_true(fabs(norm(m, cot, g) / norm(m, cot, w) - 1) < 1e-13);
-    assert_true(cabs(number(qc_form_product(m, cot, g, w)) +
-                     conj(number(qc_form_product(m, cot, g, w)))) <
-                1e-12 * norm(m, cot, w) * norm(m, cot, w));
+    assert_true(
+        cabs(number(qc_form_product(m, cot, g, w)) + conj(number(qc_form_product(m, cot, g, w)))) <
+        1e-12 * norm(m, cot, w) * norm(m, cot, w));
     assert_int_equal(qc_form_rotate(ctx, m, cot, g, g), QC_OK);
     for (int32_t h = 0; h < n; h++) assert_true(cabs(number(g[h]) + number(w[h])) < 1e-11);
     qc_stiffness_free(L);
@@ -59,15 +59,19 @@ static void curl_definition(qc_ctx *ctx, const surface *s, const qc_cover *cover
         const int32_t hs = m->edge_halfedge[2 * e], ht = m->edge_halfedge[2 * e + 1];
         double _Complex expected = 0; /* i^m Z_t(e) - Z_s(e) with Z_t(e) = -z[ht] */
         if (ht >= 0)
-            expected = cpow(I, cover->matching ? cover->matching[e] : 0) * -number(z[ht]) -
-                       number(z[hs]);
+            expected =
+                cpow(I, cover->matching ? cover->matching[e] : 0) * -number(z[ht]) - number(z[hs]);
         assert_true(cabs(number(curl[e]) - expected) < 1e-13);
     }
     free(z), free(curl);
 }
 
-static void test_gradients(void **state) { (void)state, for_all_covers(gradients); }
-static void test_curl(void **state) { (void)state, for_all_covers(curl_definition); }
+static void test_gradients(void **state) {
+    (void)state, for_all_covers(gradients);
+}
+static void test_curl(void **state) {
+    (void)state, for_all_covers(curl_definition);
+}
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_gradients),

@@ -19,7 +19,8 @@ static double quadratic(const qc_stiffness *s, int32_t n, const qc_complex *f) {
     for (int32_t i = 0; i < n; i++)
         for (int32_t j = 0; j < n; j++)
             if (s->unknown[i] >= 0 && s->unknown[j] >= 0)
-                sum += conj(number(f[i])) * D[s->unknown[i] + s->unknown[j] * s->A.n] * number(f[j]);
+                sum +=
+                    conj(number(f[i])) * D[s->unknown[i] + s->unknown[j] * s->A.n] * number(f[j]);
     free(D);
     assert_true(fabs(cimag(sum)) < 1e-11 * (1 + fabs(creal(sum))));
     return creal(sum);
@@ -49,8 +50,9 @@ static void both(qc_ctx *ctx, const surface *surf, const qc_cover *cover, int ki
     for (int which = 0; which < 3; which++) {
         const int32_t n = which ? m->n_vertices : m->n_edges;
         qc_stiffness *s = NULL;
-        assert_int_equal(which ? qc_stiffness_vertices(ctx, cover, cot, which > 1 ? pinned : NULL, &s)
-                               : qc_stiffness_edges(ctx, cover, cot, &s),
+        assert_int_equal(which
+                             ? qc_stiffness_vertices(ctx, cover, cot, which > 1 ? pinned : NULL, &s)
+                             : qc_stiffness_edges(ctx, cover, cot, &s),
                          QC_OK);
         check_pattern(&s->A);
         qc_complex *f = random_function(s, n);
@@ -73,8 +75,8 @@ static void both(qc_ctx *ctx, const surface *surf, const qc_cover *cover, int ki
     free(cot), free(z), free(pinned);
 }
 
-/* On the plain closed mesh, with C the vertex-edge incidence: phi_p = 1/2 sum psi_e (1.4). The fixed
- * rows (edge 0, vertex 0) follow from the constants in the kernel. */
+/* On the plain closed mesh, with C the vertex-edge incidence: phi_p = 1/2 sum psi_e (1.4). The
+ * fixed rows (edge 0, vertex 0) follow from the constants in the kernel. */
 static void test_averaging(void **state) {
     (void)state;
     qc_ctx *ctx = new_context();
@@ -110,9 +112,12 @@ static void test_averaging(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void test_both(void **state) { (void)state, for_all_covers(both); }
+static void test_both(void **state) {
+    (void)state, for_all_covers(both);
+}
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_both), cmocka_unit_test(test_averaging)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_both),
+                                       cmocka_unit_test(test_averaging)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

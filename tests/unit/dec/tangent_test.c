@@ -9,7 +9,8 @@ static void frames(qc_ctx *ctx, const surface *s, const qc_cover *cover, int kin
     (void)s;
     if (kind != PLAIN) return;
     const qc_mesh *m = cover->mesh;
-    qc_complex *edge = NEW_ARRAY(qc_complex, 3 * m->n_faces), *rho = NEW_ARRAY(qc_complex, m->n_edges);
+    qc_complex *edge = NEW_ARRAY(qc_complex, 3 * m->n_faces),
+               *rho = NEW_ARRAY(qc_complex, m->n_edges);
     double *x = NEW_ARRAY(double, 3 * m->n_faces), *y = NEW_ARRAY(double, 3 * m->n_faces);
     double *normal = NEW_ARRAY(double, 3 * m->n_faces), *gauss = NEW_ARRAY(double, m->n_vertices);
     assert_int_equal(qc_tangent_edges(ctx, m, edge), QC_OK);
@@ -52,7 +53,8 @@ static void test_cross(void **state) {
     (void)state;
     qc_ctx *ctx = new_context();
     qc_mesh *m = build_surface(ctx, &SURFACES[1], 1);
-    qc_complex *edge = NEW_ARRAY(qc_complex, 3 * m->n_faces), *z = NEW_ARRAY(qc_complex, 3 * m->n_faces);
+    qc_complex *edge = NEW_ARRAY(qc_complex, 3 * m->n_faces),
+               *z = NEW_ARRAY(qc_complex, 3 * m->n_faces);
     qc_complex *x = random_numbers(m->n_faces), *jz = NEW_ARRAY(qc_complex, 3 * m->n_faces);
     double *scale = NEW_ARRAY(double, m->n_faces), *cot = cotangents(ctx, m);
     for (int32_t t = 0; t < m->n_faces; t++) scale[t] = random_unit();
@@ -70,7 +72,9 @@ static void test_cross(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void test_frames(void **state) { (void)state, for_all_covers(frames); }
+static void test_frames(void **state) {
+    (void)state, for_all_covers(frames);
+}
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_frames), cmocka_unit_test(test_cross)};
