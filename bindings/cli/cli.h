@@ -72,6 +72,8 @@ typedef struct cli_session {
     bool out_of_time, line_open;
     double last_time;
     char last_stage[64];
+    char **warning;
+    int n_warnings;
 } cli_session;
 
 /* What every command that computes takes: threads 0 = all cores, time_limit 0 = none. */
@@ -99,6 +101,8 @@ typedef struct cli_common {
     }
 int cli_session_open(cli_session *session, const cli_common *common);
 void cli_session_close(cli_session *session);
+/* Prints a warning and keeps it for the statistics. */
+void cli_session_warn(cli_session *session, const char *format, ...) CLI_PRINTF(2, 3);
 /* Ends the progress line. */
 void cli_session_quiet(cli_session *session);
 /* The exit status for a failed call: interruption and time limit first, then as cli_context_error.

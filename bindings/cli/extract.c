@@ -56,8 +56,9 @@ static int compute(run *r, const settings *s) {
 
 static int write_stats(run *r, const settings *s) {
     r->times.total = cli_seconds() - r->session.start;
-    char *text = cli_stats_json(qc_bag_latest(r->bag, QC_TYPE_REPORT), r->pipeline, s->input,
-                                "extract", &r->times, 0, NULL);
+    char *text =
+        cli_stats_json(qc_bag_latest(r->bag, QC_TYPE_REPORT), r->pipeline, s->input, "extract",
+                       &r->times, r->session.n_warnings, (const char *const *)r->session.warning);
     if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->stats);
     const int status = cli_write_text(s->stats, text);
     free(text);

@@ -56,7 +56,6 @@ static int work(run *r, const settings *s) {
     if (qc_remesh(r->session.ctx, r->pipeline, r->input, &options, &r->result) != QC_OK)
         return cli_session_error(&r->session, s->input, EXIT_FAILED);
     cli_session_quiet(&r->session);
-    for (int32_t i = 0; i < r->result.n_warnings; i++) cli_warning("%s", r->result.warning[i]);
     if (cli_interrupted()) return cli_error(EXIT_INTERRUPTED, "interrupted");
     if (qc_face_field_write(r->session.ctx, r->result.field, s->output) != QC_OK)
         return cli_session_error(&r->session, s->output, EXIT_FAILED);

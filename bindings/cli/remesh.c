@@ -38,8 +38,6 @@ typedef struct run {
     qc_polygon_mesh *input;
     qc_remesh_result result;
     cli_times times;
-    const char **warning;
-    int n_warnings;
 } run;
 
 static int parse(int argc, const char **argv, settings *s, cli_arguments *arguments) {
@@ -114,16 +112,6 @@ static int check_settings(const settings *s) {
     return check_outputs(s);
 }
 
-/* text lives as long as the run. */
-static void warn(run *r, const char *text) {
-    const char **grown = realloc(r->warning, ((size_t)r->n_warnings + 1) * sizeof *grown);
-    cli_session_quiet(&r->session);
-    cli_warning("%s", text);
-    if (!grown) return;
-    r->warning = grown;
-    r->warning[r->n_warnings++] = text;
-}
-
 static int build_pipeline(run *r, const settings *s) {
     qc_default_pipeline_options options = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
     options.quads = s->quads;
@@ -139,12 +127,15 @@ static int build_pipeline(run *r, const settings *s) {
 
 static int compute(run *r, const settings *s) {
     if (!s->pipeline && s->mode == MODE_NONE)
-        warn(r, "mode best is not built yet: ran mode fast (name --mode fast to silence this)");
+        cli_session_warn(
+            &r->session,
+            "mode best is not built yet: ran mode fast (name --mode fast to silence this)");
     qc_remesh_options options = QC_REMESH_OPTIONS_INIT;
     options.strict = s->strict;
     if (qc_remesh(r->session.ctx, r->pipeline, r->input, &options, &r->result) != QC_OK)
         return cli_session_error(&r->session, s->input, EXIT_FAILED);
-    for (int32_t i = 0; i < r->result.n_warnings; i++) warn(r, r->result.warning[i]);
+    for (int32_t i = 0; i < r->result.n_warnings; i++)
+        cli_session_warn(&r->session, "%s", r->result.warning[i]);
     return EXIT_DONE;
 }
 
@@ -161,8 +152,10 @@ static int write_field(run *r, const char *path) {
     if (!r->result.field)
         return cli_error(EXIT_FAILED, "%s: no step of the pipeline makes a field", path);
     if (r->result.mesh->n_faces != r->input->n_faces)
-        warn(r, "the field written has one cross for each face of the repaired mesh, not of the "
-                "input");
+        cli_session_warn(
+            &r->session,
+            "the field written has one cross for each face of the repaired mesh, not of the "
+            "input");
     if (qc_face_field_write(r->session.ctx, r->result.field, path) != QC_OK)
         return cli_session_error(&r->session, path, EXIT_FAILED);
     return EXIT_DONE;
@@ -173,7 +166,7 @@ static int write_stats(run *r, const settings *s) {
     r->times.total = cli_seconds() - r->session.start;
     char *text =
         cli_stats_json(r->result.report, r->pipeline, s->input, s->pipeline ? "pipeline" : "fast",
-                       &r->times, r->n_warnings, r->warning);
+                       &r->times, r->session.n_warnings, (const char *const *)r->session.warning);
     if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->stats);
     const int status = cli_write_text(s->stats, text);
     free(text);
@@ -185,7 +178,8 @@ static void check_density(run *r) {
     const double target = report->density.target_quads;
     if (r->result.n_failed == 0 && target > 0 && report->quads.faces > 0 &&
         fabs((double)report->quads.faces - target) > 0.05 * target)
-        warn(r, "the number of quads is more than 5 % off the target");
+        cli_session_warn(&r->session, "made %lld quads, more than 5 %% off the target of %g",
+                         (long long)report->quads.faces, target);
 }
 
 static int write_all(run *r, const settings *s) {
@@ -226,7 +220,6 @@ int cli_remesh(int argc, const char **argv) {
     qc_pipeline_free(r.pipeline);
     qc_registry_free(r.registry);
     if (r.session.ctx) cli_session_close(&r.session);
-    free(r.warning);
     cli_arguments_free(&arguments);
     return status;
 }

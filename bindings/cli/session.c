@@ -1,6 +1,8 @@
 /* A run of the program: context, progress display, Ctrl-C and the time limit. */
 #include "bindings/cli/cli.h"
 #include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -46,11 +48,28 @@ static bool on_progress(void *user, const char *stage, double fraction) {
     return !interrupted && !s->out_of_time;
 }
 
-static void on_log(void *user, int32_t level, const char *stage, const char *text) {
-    cli_session *s = user;
-    if (level < QC_LOG_WARNING) return;
+void cli_session_warn(cli_session *s, const char *format, ...) {
+    char text[1024];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
     cli_session_quiet(s);
-    cli_warning("%s%s%s", stage, *stage ? ": " : "", text);
+    cli_warning("%s", text);
+    char *copy = strdup(text);
+    char **grown = copy ? realloc(s->warning, ((size_t)s->n_warnings + 1) * sizeof *grown) : NULL;
+    if (!grown) {
+        free(copy);
+        return;
+    }
+    s->warning = grown;
+    s->warning[s->n_warnings++] = copy;
+}
+
+static void on_log(void *user, int32_t level, const char *stage, const char *text) {
+    if (level < QC_LOG_WARNING) return;
+    const bool named = strncmp(text, stage, strlen(stage)) == 0; /* "" is a prefix of all */
+    cli_session_warn(user, "%s%s%s", named ? "" : stage, named ? "" : ": ", text);
 }
 
 int cli_session_open(cli_session *session, const cli_common *common) {
@@ -77,6 +96,8 @@ int cli_session_open(cli_session *session, const cli_common *common) {
 
 void cli_session_close(cli_session *session) {
     cli_session_quiet(session);
+    for (int i = 0; i < session->n_warnings; i++) free(session->warning[i]);
+    free(session->warning);
     qc_ctx_free(session->ctx);
     session->ctx = NULL;
 }

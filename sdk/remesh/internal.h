@@ -41,7 +41,6 @@ qc_status qc__density_restore(qc_pipeline *pipeline, const qc__density *density)
 /* --- results --------------------------------------------------------------------------------- */
 
 qc_status qc__warn(qc_ctx *ctx, qc_remesh_result *result, const char *format, ...) QC__PRINTF(3, 4);
-qc_status qc__warn_repairs(qc_ctx *ctx, const qc_repair_report *report, qc_remesh_result *result);
 /* Names component c by number, size and place, with the context's last error. */
 qc_status qc__warn_failure(qc_ctx *ctx, const qc__parts *parts, int32_t c,
                            qc_remesh_result *result);

@@ -122,12 +122,10 @@ static qc_status run_whole(job *j, const qc_polygon_mesh *input) {
     status = qc_pipeline_run_range(j->pipeline, 0, j->split, j->whole);
     qc__range_end(j->ctx, outer);
     if (status != QC_OK) return status;
-    const qc_repair_report *report = qc_bag_latest(j->whole, QC_TYPE_REPAIR_REPORT);
-    if (report) status = qc__warn_repairs(j->ctx, report, j->result);
+    j->result->repairs = qc_object_retain(qc_bag_latest(j->whole, QC_TYPE_REPAIR_REPORT));
     const qc_mesh *mesh = qc_bag_latest(j->whole, QC_TYPE_MESH);
     j->result->mesh = qc_object_retain(mesh);
-    if (status == QC_OK) status = qc__parts_create(j->ctx, mesh, &j->parts);
-    return status;
+    return qc__parts_create(j->ctx, mesh, &j->parts);
 }
 
 static qc_status run_job(job *j, const qc_polygon_mesh *input) {
@@ -167,6 +165,7 @@ qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_mesh *i
 void qc_remesh_result_clear(qc_remesh_result *result) {
     if (!result) return;
     qc_object_release(result->mesh);
+    qc_object_release(result->repairs);
     qc_object_release(result->quads);
     qc_object_release(result->uv);
     qc_object_release(result->field);

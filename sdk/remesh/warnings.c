@@ -1,4 +1,4 @@
-/* The warnings of a result: what was repaired, which components failed and why. */
+/* The warnings of a result: which components failed and why. */
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -23,21 +23,6 @@ qc_status qc__warn(qc_ctx *ctx, qc_remesh_result *result, const char *format, ..
     result->warning = grown;
     result->warning[result->n_warnings++] = copy;
     return QC_OK;
-}
-
-qc_status qc__warn_repairs(qc_ctx *ctx, const qc_repair_report *report, qc_remesh_result *result) {
-    qc_status status = QC_OK;
-    for (int32_t kind = 0; kind < QC_REPAIR_KINDS && status == QC_OK; kind++) {
-        if (report->count[kind] == 0) continue;
-        char first[64] = "";
-        int length = 0;
-        for (int i = 0; i < 4 && report->first[kind][i] >= 0; i++)
-            length += snprintf(first + length, sizeof first - (size_t)length, "%s%d",
-                               i > 0 ? ", " : "", (int)report->first[kind][i]);
-        status = qc__warn(ctx, result, "repair: %s: %d (first: %s)", qc_repair_kind_name(kind),
-                          (int)report->count[kind], first);
-    }
-    return status;
 }
 
 qc_status qc__warn_failure(qc_ctx *ctx, const qc__parts *parts, int32_t c,

@@ -45,14 +45,15 @@ typedef struct qc_remesh_options {
 
 /* Members are NULL when no step made them. */
 typedef struct qc_remesh_result {
-    qc_mesh *mesh;          /* the whole surface after the first steps (repaired) */
-    qc_polygon_mesh *quads; /* source_face counts faces of the input */
-    qc_polygon_mesh *uv;    /* the triangles with one vt per corner */
-    qc_face_field *field;   /* cross field on `mesh`; components that failed have a constant one */
-    qc_report *report;      /* sums over the components; report->input is that of `mesh` */
-    int32_t n_failed;       /* components without a result */
+    qc_mesh *mesh;             /* the whole surface after the first steps (repaired) */
+    qc_repair_report *repairs; /* what was changed to get it; logged as warnings, too */
+    qc_polygon_mesh *quads;    /* source_face counts faces of the input */
+    qc_polygon_mesh *uv;       /* the triangles with one vt per corner */
+    qc_face_field *field; /* cross field on `mesh`; components that failed have a constant one */
+    qc_report *report;    /* sums over the components; report->input is that of `mesh` */
+    int32_t n_failed;     /* components without a result */
     int32_t n_warnings;
-    char **warning; /* one line each: repairs, components that failed */
+    char **warning; /* one line each: components that failed */
 } qc_remesh_result;
 
 /* Runs the steps up to and including the first that outputs a qc.mesh/1 on the whole input (bag
