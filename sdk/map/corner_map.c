@@ -11,6 +11,7 @@ static void corner_map_destroy(qc_object *object) {
     qc_object_release(map->mesh);
     qc__free((void *)(uintptr_t)map->uv);
     qc__free((void *)(uintptr_t)map->cross);
+    qc__free((void *)(uintptr_t)map->rotation);
     qc__free(map);
 }
 
@@ -53,5 +54,14 @@ qc_status qc_corner_map_create(qc_ctx *ctx, const qc_mesh *mesh, const double *u
     map->cross = cross_copy;
     map->edge_length = edge_length;
     *out = map;
+    return QC_OK;
+}
+
+qc_status qc_corner_map_set_rotation(qc_ctx *ctx, qc_corner_map *map, const int8_t *rotation) {
+    int8_t *copy = QC__NEW(ctx, int8_t, map->mesh->n_edges);
+    if (!copy) return QC_ERR_NOMEM;
+    memcpy(copy, rotation, sizeof *copy * (size_t)map->mesh->n_edges);
+    qc__free((void *)(uintptr_t)map->rotation);
+    map->rotation = copy;
     return QC_OK;
 }

@@ -74,6 +74,7 @@ typedef struct qc__grid_build {
     qc_ctx *ctx;
     const qc_mesh *mesh;
     const double *uv; /* 6 n_faces, shifted so that every component is near the origin */
+    const int8_t *known_rotation; /* of the corner map, or NULL */
     double tolerance; /* parameter units */
     int32_t bits;
     int32_t *grid_uv;

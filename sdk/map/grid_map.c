@@ -99,7 +99,7 @@ qc_status qc_grid_map_create(qc_ctx *ctx, const qc_corner_map *map, double toler
     qc_status status = uv && low && high ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         center(map, low, high, uv);
-        qc__grid_build b = {.ctx = ctx, .mesh = m, .uv = uv,
+        qc__grid_build b = {.ctx = ctx, .mesh = m, .uv = uv, .known_rotation = map->rotation,
                             .tolerance = tolerance > 0 ? tolerance : 0.05};
         status = build(&b, g);
     }
@@ -125,10 +125,14 @@ qc_status qc_grid_map_to_corner_map(qc_ctx *ctx, const qc_grid_map *grid,
     const double scale = ldexp(1.0, -grid->bits);
     for (int64_t i = 0; i < n; i++) uv[i] = scale * grid->uv[i];
     qc_corner_map *map = NULL;
-    const qc_status status = qc_corner_map_create(ctx, grid->mesh, uv, like ? like->edge_length : 0,
-                                                  like ? like->cross : NULL, &map);
+    qc_status status = qc_corner_map_create(ctx, grid->mesh, uv, like ? like->edge_length : 0,
+                                            like ? like->cross : NULL, &map);
     qc__free(uv);
-    if (status != QC_OK) return status;
+    if (status == QC_OK) status = qc_corner_map_set_rotation(ctx, map, grid->rotation);
+    if (status != QC_OK) {
+        qc_object_release(map);
+        return status;
+    }
     if (like) {
         map->field_energy = like->field_energy;
         map->curl_energy = like->curl_energy;

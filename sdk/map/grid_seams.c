@@ -52,7 +52,9 @@ static qc_status seam(qc__grid_build *b, int32_t e) {
     const double complex s[2] = {value(b, qc_next(h)), value(b, qc_prev(h))};
     const double complex t[2] = {value(b, qc_prev(k)), value(b, qc_next(k))};
     double best = INFINITY, second = INFINITY;
+    const int known = b->known_rotation ? b->known_rotation[e] & 3 : -1;
     for (int r = 0; r < 4; r++) {
+        if (known >= 0 && r != known) continue;
         double complex tau;
         const double error = residual(s, t, r, &tau);
         if (error >= best) {

@@ -111,6 +111,9 @@ static qc_status pin_full_turns(qc__grid_build *b) {
     const qc_grid_map view = {.mesh = m, .bits = b->bits, .uv = b->grid_uv,
                               .rotation = b->rotation, .translation = b->translation};
     const double unit = (double)((int64_t)1 << b->bits);
+    bool folded = false; /* next to a fold-over the angle of a regular vertex may be any multiple      */
+    for (int32_t t = 0; t < m->n_faces && !folded; t++)
+        folded = qc_grid_map_orientation(&view, t) <= 0;
     for (int32_t v = 0; v < m->n_vertices; v++) {
         if (v % 8192 == 0 && !qc__progress(b->ctx, 0.7 + 0.2 * v / m->n_vertices))
             return QC_ERR_CANCELLED;
@@ -120,6 +123,7 @@ static qc_status pin_full_turns(qc__grid_build *b) {
         const qc__point p = qc__grid_corner(&view, m->vertex_corner[v]);
         const double u = round((double)p.u / unit), w = round((double)p.v / unit);
         const double off = fmax(fabs((double)p.u / unit - u), fabs((double)p.v / unit - w));
+        if (off > b->tolerance && folded) continue;
         if (off > b->tolerance)
             return qc__fail(b->ctx, QC_ERR_FAILED, v,
                             "the cone of %d quarter turns at vertex %d is %.3g parameter units off "

@@ -2,12 +2,14 @@
  * (thesis 4.2.1, 4.2.2, 6.3). When a number of quads is asked for, the map is rescaled and rounded
  * again until its area meets it: periods scale with the map, the period matrix does not change. */
 #include "sdk/map/period_matrix.h"
+#include "sdk/map/separation.h"
 #include <math.h>
 #include <string.h>
 
 enum {
     LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly        */
-    DENSITY_ROUNDS = 8
+    DENSITY_ROUNDS = 8,
+    REACH = 3 /* target edge lengths within which cones are kept apart                            */
 };
 
 typedef struct rounding {
@@ -18,6 +20,7 @@ typedef struct rounding {
     double *cotangent;
     qc__seams *seams;
     qc__periods *periods;
+    qc__separation *separation;
     double *P;                /* (2 n)^2, NULL = direct rounding only                               */
     double _Complex *period;  /* n: real-valued periods in lattice units                            */
     double _Complex *gap;     /* n: rounded minus scaled periods                                    */
@@ -26,6 +29,7 @@ typedef struct rounding {
     qc_complex *trial, *best; /* 3 n_faces                                                          */
     double best_scale, best_miss, harmonic, harmonic_direct;
     int64_t moves, evaluations;
+    int32_t collisions; /* pairs of cones which could not be kept apart in the last trial          */
 } rounding;
 
 /* --- periods of the seamless map ---------------------------------------------------------------- */
@@ -121,8 +125,11 @@ static qc_status round_periods(rounding *r, double scale, qc_lattice_result *res
         qc_lattice_options options = QC_LATTICE_OPTIONS_INIT;
         options.start = r->options.start;
         options.radius = r->options.radius;
-        const qc_status status =
+        qc_status status =
             qc_lattice_round(r->ctx, 2 * n, r->P, r->target, &options, r->rounded, result);
+        if (status == QC_OK)
+            status = qc__separate(r->ctx, r->separation, n, r->P, r->target, r->rounded,
+                                  &result->energy, &r->collisions);
         if (status != QC_OK) return status;
     } else {
         for (int32_t j = 0; j < 2 * n; j++) r->rounded[j] = rint(r->target[j]);
@@ -226,7 +233,9 @@ static qc_status make_period_matrix(rounding *r) {
     const qc__range outer = qc__range_begin(r->ctx, NULL, 0.2, 0.7);
     const qc_status status = qc__period_matrix(r->ctx, r->periods, r->P);
     qc__range_end(r->ctx, outer);
-    return status;
+    if (status != QC_OK) return status;
+    return qc__separation_create(r->ctx, r->seams, REACH * r->seamless->sizing->edge_length,
+                                 &r->separation);
 }
 
 static qc_status publish(rounding *r, qc_corner_map **out) {
@@ -236,12 +245,26 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
     if (!cross) return QC_ERR_NOMEM;
     for (int32_t t = 0; t < n_faces; t++)
         cross[t] = qc_quarter_turn(seamless->matching->field->x[t], -seamless->face_turn[t]);
+    const qc_cover cover = {r->mesh, seamless->matching->m};
+    int8_t *rotation = QC__ZERO(r->ctx, int8_t, r->mesh->n_edges);
     qc_corner_map *map = NULL;
-    const qc_status status =
-        qc_corner_map_create(r->ctx, r->mesh, &r->best[0].re,
-                             seamless->sizing->edge_length / r->best_scale, cross, &map);
+    qc_status status = rotation ? QC_OK : QC_ERR_NOMEM;
+    for (int32_t e = 0; e < r->mesh->n_edges && status == QC_OK; e++) {
+        const int32_t h = r->mesh->edge_halfedge[2 * (int64_t)e], g = r->mesh->twin[h];
+        if (g >= 0) /* f'_t = i^{c_t - m - c_s} f'_s + tau */
+            rotation[e] = (int8_t)((seamless->face_turn[g / 3] - qc_cover_turn(&cover, h) -
+                                    seamless->face_turn[h / 3]) & 3);
+    }
+    if (status == QC_OK)
+        status = qc_corner_map_create(r->ctx, r->mesh, &r->best[0].re,
+                                      seamless->sizing->edge_length / r->best_scale, cross, &map);
+    if (status == QC_OK) status = qc_corner_map_set_rotation(r->ctx, map, rotation);
+    qc__free(rotation);
     qc__free(cross);
-    if (status != QC_OK) return status;
+    if (status != QC_OK) {
+        qc_object_release(map);
+        return status;
+    }
     const double square = r->best_scale * r->best_scale;
     map->field_energy = square * seamless->field_energy;
     map->curl_energy = square * seamless->curl_energy;
@@ -264,7 +287,11 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless, const qc_ro
     qc_status status = prepare(&r);
     if (status == QC_OK) status = make_period_matrix(&r);
     if (status == QC_OK) status = meet_density(&r);
+    if (status == QC_OK && r.collisions > 0)
+        qc__log(ctx, QC_LOG_WARNING, "%d pairs of cones are too close for this density",
+                (int)r.collisions);
     if (status == QC_OK) status = publish(&r, out);
+    qc__separation_free(r.separation);
     qc__periods_free(r.periods);
     qc__seams_free(r.seams);
     void *const blocks[] = {r.cotangent, r.f,      r.trial,  r.best,  r.P,

@@ -133,14 +133,7 @@ static qc_status trace_segments(builder *b) {
 
 /* --- wedges ----------------------------------------------------------------------------------- */
 
-/* An affine value i^turn F + sum of i^{turn_j} symbol_j while walking about a vertex. */
-typedef struct walk {
-    int32_t turn, n, capacity;
-    int32_t *symbol;
-    int8_t *symbol_turn;
-} walk;
-
-static bool walk_reserve(qc_ctx *ctx, walk *w) {
+static bool walk_reserve(qc_ctx *ctx, qc__walk *w) {
     if (w->n < w->capacity) return true;
     const int32_t capacity = w->capacity < 16 ? 16 : 2 * w->capacity;
     int32_t *symbol = qc__realloc(ctx, w->symbol, (size_t)capacity, sizeof *symbol);
@@ -153,13 +146,19 @@ static bool walk_reserve(qc_ctx *ctx, walk *w) {
     return true;
 }
 
-/* Crosses cut halfedge h: f -> i^rho f + tau from left to right, i^-rho (f - tau) the other way. */
-static bool walk_cross(builder *b, walk *w, int32_t h) {
-    const qc__seams *s = b->s;
-    const int32_t e = b->cover->mesh->halfedge_edge[h], k = s->edge_segment[e];
+void qc__walk_free(qc__walk *w) {
+    qc__free(w->symbol);
+    qc__free(w->symbol_turn);
+    *w = (qc__walk){0};
+}
+
+/* f -> i^rho f + tau from left to right, i^-rho (f - tau) the other way. */
+bool qc__walk_cross(qc_ctx *ctx, const qc__seams *s, qc__walk *w, int32_t h) {
+    const int32_t e = s->mesh->halfedge_edge[h], k = s->edge_segment[e];
+    if (k < 0) return true;
     const bool from_left = s->edge_left[e] == h;
     const int32_t turn = from_left ? s->segment_turn[k] : -s->segment_turn[k];
-    if (!walk_reserve(b->ctx, w)) return false;
+    if (!walk_reserve(ctx, w)) return false;
     w->turn = (w->turn + turn) & 3;
     for (int32_t j = 0; j < w->n; j++) w->symbol_turn[j] = (int8_t)((w->symbol_turn[j] + turn) & 3);
     w->symbol[w->n] = k;
@@ -167,7 +166,7 @@ static bool walk_cross(builder *b, walk *w, int32_t h) {
     return true;
 }
 
-static bool append_terms(qc_ctx *ctx, const walk *w, int32_t **symbol, int8_t **turn, int64_t *n,
+static bool append_terms(qc_ctx *ctx, const qc__walk *w, int32_t **symbol, int8_t **turn, int64_t *n,
                          int64_t *capacity) {
     if (*n + w->n > *capacity) {
         int64_t symbols = *capacity, turns = *capacity;
@@ -194,7 +193,7 @@ static int32_t first_corner(const builder *b, int32_t v) {
 }
 
 /* Wedges of vertex v with their terms; leaves the walk closed once around (interior vertices). */
-static bool walk_vertex(builder *b, int32_t v, walk *w) {
+static bool walk_vertex(builder *b, int32_t v, qc__walk *w) {
     const qc_mesh *mesh = b->cover->mesh;
     qc__seams *s = b->s;
     const int32_t start = first_corner(b, v), cone = s->vertex_cone[v];
@@ -212,7 +211,7 @@ static bool walk_vertex(builder *b, int32_t v, walk *w) {
             if (cone >= 0) { /* F_v = p_v */
                 int32_t symbol = s->n_segments + cone;
                 int8_t turn = (int8_t)w->turn;
-                const walk pole = {0, 1, 1, &symbol, &turn};
+                const qc__walk pole = {0, 1, 1, &symbol, &turn};
                 if (!append_terms(b->ctx, &pole, &s->term_symbol, &s->term_turn, &s->n_terms,
                                   &s->term_capacity))
                     return false;
@@ -221,13 +220,13 @@ static bool walk_vertex(builder *b, int32_t v, walk *w) {
         s->corner_wedge[c] = s->n_wedges - 1;
         const int32_t h = qc_next(c); /* the edge crossed counter-clockwise */
         fresh = is_cut(b, h);
-        if (fresh && !walk_cross(b, w, h)) return false;
+        if (fresh && !qc__walk_cross(b->ctx, s, w, h)) return false;
         c = qc_corner_ccw(mesh, c);
     } while (c >= 0 && c != start);
     return true;
 }
 
-static bool record_relation(builder *b, int32_t v, const walk *w) {
+static bool record_relation(builder *b, int32_t v, const qc__walk *w) {
     qc__seams *s = b->s;
     s->node_vertex[s->n_nodes] = v;
     s->relation_start[s->n_nodes++] = s->n_relation_terms;
@@ -253,7 +252,7 @@ static qc_status make_wedges(builder *b) {
     if (!s->vertex_wedge || !s->corner_wedge || !s->wedge_turn || !s->wedge_start ||
         !s->node_vertex || !s->relation_start)
         return QC_ERR_NOMEM;
-    walk w = {0};
+    qc__walk w = {0};
     qc_status status = QC_OK;
     for (int32_t v = 0; v < mesh->n_vertices && status == QC_OK; v++) {
         s->vertex_wedge[v] = s->n_wedges;
@@ -265,8 +264,7 @@ static qc_status make_wedges(builder *b) {
     s->vertex_wedge[mesh->n_vertices] = s->n_wedges;
     s->wedge_start[s->n_wedges] = s->n_terms;
     s->relation_start[s->n_nodes] = s->n_relation_terms;
-    qc__free(w.symbol);
-    qc__free(w.symbol_turn);
+    qc__walk_free(&w);
     return status;
 }
 

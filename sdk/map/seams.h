@@ -80,4 +80,14 @@ qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cu
 qc_status qc__seams_solve(qc_ctx *ctx, qc__seams *seams, int32_t lattice);
 void qc__seams_free(qc__seams *seams);
 
+/* A chart carried along a path of faces: f_here = i^turn f_start + sum of i^{symbol_turn} symbol. */
+typedef struct qc__walk {
+    int32_t turn, n, capacity;
+    int32_t *symbol;
+    int8_t *symbol_turn;
+} qc__walk;
+/* Crosses halfedge h from its own face to the other; false when memory runs out. */
+bool qc__walk_cross(qc_ctx *ctx, const qc__seams *seams, qc__walk *walk, int32_t h);
+void qc__walk_free(qc__walk *walk);
+
 #endif
