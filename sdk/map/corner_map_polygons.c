@@ -63,8 +63,8 @@ static qc_status check_soup(qc_ctx *ctx, const qc_polygon_mesh *soup) {
     for (int32_t f = 0; f < soup->n_faces; f++) {
         const int32_t first = soup->face_offset[f], n = soup->face_offset[f + 1] - first;
         if (n != 3)
-            return qc__fail(ctx, QC_ERR_INPUT, f,
-                            "face %d has %d corners; a map needs triangles", (int)f, (int)n);
+            return qc__fail(ctx, QC_ERR_INPUT, f, "face %d has %d corners; a map needs triangles",
+                            (int)f, (int)n);
         for (int k = 0; k < 3; k++) {
             const int32_t v = soup->face_vertex[first + k], i = soup->corner_uv[first + k];
             if (v < 0 || v >= soup->n_vertices)
@@ -73,7 +73,8 @@ static qc_status check_soup(qc_ctx *ctx, const qc_polygon_mesh *soup) {
             if (i < 0 || i >= soup->n_uvs)
                 return qc__fail(ctx, QC_ERR_INPUT, f,
                                 "face %d has no texture coordinate at corner %d; a map needs a vt "
-                                "at every corner", (int)f, k);
+                                "at every corner",
+                                (int)f, k);
         }
     }
     return QC_OK;

@@ -1,5 +1,6 @@
-/* Cells of the grid (ROBUST 3): cycles of four ports whose unit square lies in the surface as a whole. Next
- * to boundaries which are not aligned, and around holes smaller than a cell, squares are dropped. */
+/* Cells of the grid (ROBUST 3): cycles of four ports whose unit square lies in the surface as a
+ * whole. Next to boundaries which are not aligned, and around holes smaller than a cell, squares
+ * are dropped. */
 #include "sdk/map/extract_internal.h"
 
 /* To the other end, then the next port clockwise. */
@@ -11,12 +12,13 @@ int32_t qc__next_side(const qc__ports *p, int32_t port) {
     return qc__lattice_on_boundary(p->lattice, id) ? -1 : p->first[id + 1] - 1;
 }
 
-/* --- does a square contain boundary? -------------------------------------------------------------- */
+/* --- does a square contain boundary?
+ * -------------------------------------------------------------- */
 
-/* A face as seen from the cell: the cell's square has its first corner at `at` and its first side in
- * direction d of the face's chart. */
+/* A face as seen from the cell: the cell's square has its first corner at `at` and its first side
+ * in direction d of the face's chart. */
 typedef struct visit {
-    int32_t face, previous; /* earlier visit of the same face, -1 = none                            */
+    int32_t face, previous; /* earlier visit of the same face, -1 = none */
     qc__point at;
     int d;
 } visit;
@@ -24,7 +26,7 @@ typedef struct visit {
 typedef struct flood {
     qc_ctx *ctx;
     const qc__ports *ports;
-    int32_t *last; /* n_faces: latest visit of a face; stale unless visits[last] agrees             */
+    int32_t *last; /* n_faces: latest visit of a face; stale unless visits[last] agrees */
     visit *visits;
     int64_t n, capacity;
 } flood;
@@ -42,7 +44,8 @@ static bool push(flood *f, visit v) {
     return true;
 }
 
-/* Whether the segment a b meets the open square (0, unit)^2: separating axes u, v and the segment's normal. */
+/* Whether the segment a b meets the open square (0, unit)^2: separating axes u, v and the segment's
+ * normal. */
 static bool meets_square(qc__point a, qc__point b, int64_t unit) {
     if ((a.u <= 0 && b.u <= 0) || (a.u >= unit && b.u >= unit)) return false;
     if ((a.v <= 0 && b.v <= 0) || (a.v >= unit && b.v >= unit)) return false;
@@ -57,8 +60,8 @@ static bool meets_square(qc__point a, qc__point b, int64_t unit) {
     return left > 0 && right > 0;
 }
 
-/* Visits all faces which meet the open square left of `port`; *boundary = a boundary halfedge which does,
- * -1 = none. */
+/* Visits all faces which meet the open square left of `port`; *boundary = a boundary halfedge which
+ * does, -1 = none. */
 static qc_status flood_cell(flood *f, int32_t port, int32_t *boundary) {
     const qc_grid_map *g = f->ports->lattice->g;
     const int64_t unit = (int64_t)1 << g->bits;
@@ -89,7 +92,8 @@ static qc_status flood_cell(flood *f, int32_t port, int32_t *boundary) {
     return QC_OK;
 }
 
-/* --- cells ------------------------------------------------------------------------------------------ */
+/* --- cells
+ * ------------------------------------------------------------------------------------------ */
 
 static qc_status not_closed(qc_ctx *ctx, const qc__ports *p, int32_t port) {
     return qc__fail(ctx, QC_ERR_FAILED, p->face[port],
@@ -113,7 +117,7 @@ static qc_status collect(qc_ctx *ctx, const qc__ports *p, flood *f, qc__cells *c
     const bool closed = p->lattice->g->mesh->n_boundary_edges == 0;
     int64_t capacity = 0;
     for (int32_t port = 0; port < p->n; port++) {
-        if (port % 1024 == 0 && !qc__progress(ctx, 0.7 + 0.15 * port / p->n))
+        if (port % 64 == 0 && !qc__progress(ctx, 0.7 + 0.15 * port / p->n))
             return QC_ERR_CANCELLED;
         if (cells->left[port] >= 0) continue;
         int32_t side[5] = {port, -1, -1, -1, -1};
@@ -129,7 +133,8 @@ static qc_status collect(qc_ctx *ctx, const qc__ports *p, flood *f, qc__cells *c
         if (!lowest) continue; /* was refused before */
         int32_t boundary = -1;
         qc_status status = closed ? QC_OK : flood_cell(f, port, &boundary);
-        if (status == QC_OK && boundary >= 0) status = refuse(ctx, cells, &capacity, port, boundary);
+        if (status == QC_OK && boundary >= 0)
+            status = refuse(ctx, cells, &capacity, port, boundary);
         if (status != QC_OK) return status;
         if (boundary >= 0) continue;
         for (int i = 0; i < 4; i++) {

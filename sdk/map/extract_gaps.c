@@ -1,5 +1,5 @@
-/* Which boundary loops lie in one gap of the kept cells: sets of sectors between ports which no cell fills,
- * joined along isolines, through split vertices and with the loops they meet. */
+/* Which boundary loops lie in one gap of the kept cells: sets of sectors between ports which no
+ * cell fills, joined along isolines, through split vertices and with the loops they meet. */
 #include "sdk/map/extract_internal.h"
 #include "sdk/mesh/internal.h"
 

@@ -1,5 +1,5 @@
-/* Choice of the cells on meshes with boundary: the largest edge-connected set of each component, compared
- * with the component by its Euler characteristic. */
+/* Choice of the cells on meshes with boundary: the largest edge-connected set of each component,
+ * compared with the component by its Euler characteristic. */
 #include "sdk/map/extract_internal.h"
 #include "sdk/mesh/internal.h"
 
@@ -45,9 +45,10 @@ static void compact(const qc__ports *p, qc__cells *c, int32_t *set, const int32_
     c->n = kept;
 }
 
-/* V - E + F of the kept cells less that of the mesh, for each component: 4 F = 2 E - (boundary sides). The
- * vertices are counted as qc__quad_vertices splits them. */
-static void compare_euler(const qc__ports *p, const qc__cells *c, int32_t *vertex, int32_t *excess) {
+/* V - E + F of the kept cells less that of the mesh, for each component: 4 F = 2 E - (boundary
+ * sides). The vertices are counted as qc__quad_vertices splits them. */
+static void compare_euler(const qc__ports *p, const qc__cells *c, int32_t *vertex,
+                          int32_t *excess) {
     const qc_mesh *m = p->lattice->g->mesh;
     const int32_t n_vertices = qc__quad_vertices(p, c, vertex);
     int32_t counted = 0; /* vertices are numbered in the order of the ports */
@@ -76,14 +77,16 @@ static int32_t first_face(const qc_mesh *m, int32_t component) {
     return t;
 }
 
-/* A component without quads, or one which a narrow neck divides: more than a tenth would be lost. */
+/* A component without quads, or one which a narrow neck divides: more than a tenth would be lost.
+ */
 static qc_status check_sizes(qc_ctx *ctx, const qc_mesh *m, const int32_t *size,
                              const int32_t *best, const int32_t *dropped) {
     for (int32_t i = 0; i < m->n_components; i++) {
         if (best[i] < 0)
             return qc__fail(ctx, QC_ERR_FAILED, first_face(m, i),
                             "component %d (face %d ...) is smaller than a quad; try a finer "
-                            "density", (int)i, (int)first_face(m, i));
+                            "density",
+                            (int)i, (int)first_face(m, i));
         if (dropped[i] > size[best[i]] / 9)
             return qc__fail(ctx, QC_ERR_FAILED, first_face(m, i),
                             "component %d (face %d ...) has a neck narrower than a quad: it would "

@@ -1,5 +1,5 @@
-/* Lattice vertices of a grid map (ROBUST 3): every integer point is found once, as mesh vertex, on an edge
- * or in a face, by exact tests only. */
+/* Lattice vertices of a grid map (ROBUST 3): every integer point is found once, as mesh vertex, on
+ * an edge or in a face, by exact tests only. */
 #include <stdlib.h>
 
 #include "sdk/map/extract_internal.h"
@@ -7,7 +7,9 @@
 enum { MAX_POINTS = 1 << 28 };
 
 /* Floor of a / b, b > 0. */
-static int64_t floor_div(int64_t a, int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
+static int64_t floor_div(int64_t a, int64_t b) {
+    return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
 
 static void put(int32_t *uv, int64_t i, int64_t u, int64_t v) {
     if (!uv) return;
@@ -15,8 +17,8 @@ static void put(int32_t *uv, int64_t i, int64_t u, int64_t v) {
     uv[2 * i + 1] = (int32_t)v;
 }
 
-/* Integer points strictly between a and b, from a to b; uv NULL = count only. One candidate for each integer of
- * the coordinate which varies more. */
+/* Integer points strictly between a and b, from a to b; uv NULL = count only. One candidate for
+ * each integer of the coordinate which varies more. */
 static int64_t points_between(qc__point a, qc__point b, int32_t bits, int32_t *uv) {
     const bool swap = llabs(b.u - a.u) < llabs(b.v - a.v);
     const int64_t unit = (int64_t)1 << bits;
@@ -42,8 +44,8 @@ static int64_t edge_points(const qc_grid_map *g, int32_t e, int32_t *uv) {
                           uv);
 }
 
-/* Integer points strictly inside the triangle, row by row. In row y an edge (a, d) bounds x - a.u by
- * d.u (y - a.v) / d.v, from above when d.v > 0. */
+/* Integer points strictly inside the triangle, row by row. In row y an edge (a, d) bounds x - a.u
+ * by d.u (y - a.v) / d.v, from above when d.v > 0. */
 static int64_t face_points(const qc_grid_map *g, int32_t t, int32_t *uv) {
     const int64_t unit = (int64_t)1 << g->bits;
     const qc__point p[3] = {qc__grid_corner(g, 3 * t), qc__grid_corner(g, 3 * t + 1),
@@ -88,7 +90,8 @@ static qc_status count(qc_ctx *ctx, qc__lattice *l) {
     const qc_mesh *m = g->mesh;
     int64_t n = 0;
     for (int32_t v = 0; v < m->n_vertices; v++)
-        l->vertex_id[v] = at_lattice(g, qc__grid_corner(g, m->vertex_corner[v])) ? (int32_t)n++ : -1;
+        l->vertex_id[v] =
+            at_lattice(g, qc__grid_corner(g, m->vertex_corner[v])) ? (int32_t)n++ : -1;
     l->n_at_vertices = (int32_t)n;
     for (int32_t e = 0; e < m->n_edges && n <= MAX_POINTS; e++) {
         if (e % 8192 == 0 && !qc__progress(ctx, 0.08 * e / m->n_edges)) return QC_ERR_CANCELLED;
@@ -218,17 +221,21 @@ static int32_t find_on_edge(const qc__lattice *l, int32_t h, qc__point p) {
         qc__minus(qc__grid_corner(g, qc_prev(home)), qc__grid_corner(g, qc_next(home)));
     const int axis = llabs(d.u) < llabs(d.v);
     const int64_t along = axis ? d.v : d.u, key = (axis ? p.v : p.u) >> g->bits;
-    const int32_t i = lower_bound(l->uv, l->edge_first[e], l->edge_first[e + 1], axis,
-                                  along > 0 ? 1 : -1, key);
+    const int32_t i =
+        lower_bound(l->uv, l->edge_first[e], l->edge_first[e + 1], axis, along > 0 ? 1 : -1, key);
     return i < l->edge_first[e + 1] && l->uv[2 * (int64_t)i + axis] == key ? i : -1;
 }
 
 int32_t qc__lattice_find(const qc__lattice *l, int32_t t, qc__point p) {
     int k = 0;
     switch (qc__locate(l->g, t, p, &k)) {
-    case QC__INSIDE: return find_in_face(l, t, p.u >> l->g->bits, p.v >> l->g->bits);
-    case QC__ON_EDGE: return find_on_edge(l, 3 * t + k, p);
-    case QC__AT_CORNER: return l->vertex_id[l->g->mesh->face_vertex[3 * t + k]];
-    default: return -1;
+    case QC__INSIDE:
+        return find_in_face(l, t, p.u >> l->g->bits, p.v >> l->g->bits);
+    case QC__ON_EDGE:
+        return find_on_edge(l, 3 * t + k, p);
+    case QC__AT_CORNER:
+        return l->vertex_id[l->g->mesh->face_vertex[3 * t + k]];
+    default:
+        return -1;
     }
 }

@@ -1,5 +1,5 @@
-/* Quad extraction from an exact integer-grid map (ROBUST 3, after Ebke, Bommes, Campen, Kobbelt, "QEx:
- * robust quad mesh extraction", 2013) with its acceptance test. */
+/* Quad extraction from an exact integer-grid map (ROBUST 3, after Ebke, Bommes, Campen, Kobbelt,
+ * "QEx: robust quad mesh extraction", 2013) with its acceptance test. */
 #include "sdk/map/extract_internal.h"
 
 static qc_status check_map(qc_ctx *ctx, const qc_grid_map *g) {
@@ -11,17 +11,19 @@ static qc_status check_map(qc_ctx *ctx, const qc_grid_map *g) {
     for (int32_t t = g->first_flipped; t < g->mesh->n_faces && named < 4; t++) {
         const int64_t area = qc_grid_map_orientation(g, t);
         if (area > 0 || (g->n_flipped > 0 && area == 0)) continue;
-        used += snprintf(list + used, sizeof list - (size_t)used, "%s%d", named++ ? ", " : "",
-                         (int)t);
+        used +=
+            snprintf(list + used, sizeof list - (size_t)used, "%s%d", named++ ? ", " : "", (int)t);
     }
-    return qc__fail(ctx, QC_ERR_FAILED, g->first_flipped,
-                    "map %s at %d face%s (first: face %s%s); try a finer density or run qc.untangle "
-                    "before",
-                    g->n_flipped > 0 ? "folds over" : "is degenerate", (int)n, n == 1 ? "" : "s", list,
-                    n > named ? " ..." : "");
+    return qc__fail(
+        ctx, QC_ERR_FAILED, g->first_flipped,
+        "map %s at %d face%s (first: face %s%s); try a finer density or run qc.untangle "
+        "before",
+        g->n_flipped > 0 ? "folds over" : "is degenerate", (int)n, n == 1 ? "" : "s", list,
+        n > named ? " ..." : "");
 }
 
-/* A face of the input next to a defect, for the error text: the source of a vertex of the first bad quad. */
+/* A face of the input next to a defect, for the error text: the source of a vertex of the first bad
+ * quad. */
 static int32_t place_of(const qc_polygon_mesh *q, const qc_polygon_topology *t) {
     const int32_t i = t->first_bad_element;
     if (i < 0 || q->n_faces == 0) return -1;
@@ -66,8 +68,8 @@ static qc_status extract(qc_ctx *ctx, const qc_grid_map *grid, qc__lattice *latt
     if (status == QC_OK && grid->mesh->n_boundary_edges > 0)
         status = qc__cells_keep(ctx, ports, cells);
     if (status == QC_OK && cells->n == 0)
-        status = qc__fail(ctx, QC_ERR_FAILED, -1,
-                          "the map has no quad at all; try a finer density");
+        status =
+            qc__fail(ctx, QC_ERR_FAILED, -1, "the map has no quad at all; try a finer density");
     if (status == QC_OK) status = qc__quads_create(ctx, ports, cells, quads);
     return status;
 }

@@ -1,5 +1,5 @@
-/* Tracing of isolines from port to port (ROBUST 3). The line is u or v = const, so the side of a corner is
- * the sign of a difference; only the stop test needs products. */
+/* Tracing of isolines from port to port (ROBUST 3). The line is u or v = const, so the side of a
+ * corner is the sign of a difference; only the stop test needs products. */
 #include "sdk/map/extract_internal.h"
 
 /* A unit step on its way: its ends in the chart of `face`, direction d from `from` to `to`. */
@@ -7,7 +7,7 @@ typedef struct step {
     int32_t face;
     qc__point from, to;
     int d;
-    int32_t exit; /* boundary halfedge at which it left the surface                                 */
+    int32_t exit; /* boundary halfedge at which it left the surface */
 } step;
 
 /* Sign of the corner's side of the line: positive = left. */
@@ -41,7 +41,8 @@ static bool turn_about(const qc_grid_map *g, step *s, int32_t c, bool ccw) {
     return false;
 }
 
-/* The line leaves through the regular vertex of corner c: straight on is the sector with its direction. */
+/* The line leaves through the regular vertex of corner c: straight on is the sector with its
+ * direction. */
 static bool pass_vertex(const qc_grid_map *g, step *s, int32_t c) {
     const step before = *s;
     if (turn_about(g, s, c, true)) return true;
@@ -58,8 +59,7 @@ static bool advance(const qc_grid_map *g, step *s) {
         const int a = side[(k + 1) % 3], b = side[(k + 2) % 3];
         if (a < 0 && b > 0) return cross_edge(g, s, 3 * t + k);
         if (side[k] == 0 && a > 0 && b < 0) return pass_vertex(g, s, 3 * t + k);
-        if (a == 0 && b == 0)
-            return pass_vertex(g, s, 3 * t + (side[k] > 0 ? k + 2 : k + 1) % 3);
+        if (a == 0 && b == 0) return pass_vertex(g, s, 3 * t + (side[k] > 0 ? k + 2 : k + 1) % 3);
     }
     return false;
 }
@@ -79,13 +79,14 @@ static int32_t arrive(const qc__ports *p, step s) {
     return cross_edge(g, &s, h) ? qc__port_find(p, id, s.face, (s.d + 2) & 3) : -1;
 }
 
-/* From a port to the face which holds the next integer point; false when the line leaves the surface. */
+/* From a port to the face which holds the next integer point; false when the line leaves the
+ * surface. */
 static bool walk(const qc__ports *p, int32_t port, step *s) {
     const qc_grid_map *g = p->lattice->g;
     const int64_t unit = (int64_t)1 << g->bits;
     int64_t limit = 4 * (int64_t)g->mesh->n_faces + 16;
-    *s = (step){.face = p->face[port], .from = qc__port_point(p, port), .d = p->dir[port],
-                .exit = -1};
+    *s = (step){
+        .face = p->face[port], .from = qc__port_point(p, port), .d = p->dir[port], .exit = -1};
     s->to = qc__plus(s->from, qc__turn((qc__point){unit, 0}, s->d));
     int k;
     while (qc__locate(g, s->face, s->to, &k) == QC__OUTSIDE)

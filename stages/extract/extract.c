@@ -34,9 +34,12 @@ const qc_stage qc_stage_extract = {
     "qc.extract",
     "1.0",
     "quads from an integer-seamless map",
-    "Puts the map on a fixed-point grid, so that all transitions and orientation tests are exact, and "
-    "traces the integer isolines from grid point to grid point. The result has only quads, is manifold "
-    "and has the Euler characteristic and the boundary loops of the surface; otherwise the stage fails "
+    "Puts the map on a fixed-point grid, so that all transitions and orientation tests are exact, "
+    "and "
+    "traces the integer isolines from grid point to grid point. The result has only quads, is "
+    "manifold "
+    "and has the Euler characteristic and the boundary loops of the surface; otherwise the stage "
+    "fails "
     "and names the place. Maps which fold over are refused: run qc.untangle before.\n\n"
     "Boundaries which do not follow isolines become staircases of whole quads.",
     "Ebke, Bommes, Campen, Kobbelt: QEx: Robust Quad Mesh Extraction (2013)",

@@ -54,7 +54,9 @@ static void fold_overs_are_named(void **state) {
 static void tolerance_is_a_parameter(void **state) {
     (void)state;
     qc_ctx *ctx = maps_context();
-    struct { double tolerance; } params = {0.05};
+    struct {
+        double tolerance;
+    } params = {0.05};
     qc_corner_map *map = cube(ctx);
     ((double *)(uintptr_t)map->uv)[2 * 40] += 0.06;
     qc_bag *bag = bag_with(ctx, map);

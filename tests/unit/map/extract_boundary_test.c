@@ -1,7 +1,9 @@
-/* Boundaries which do not follow isolines: whole quads only, every hole and component kept, or an error. */
+/* Boundaries which do not follow isolines: whole quads only, every hole and component kept, or an
+ * error. */
 #include "unit/map/maps.h"
 
-/* A plane of n x n cells, k x k squares in each, with rectangles of squares (x0, y0, x1, y1) removed. */
+/* A plane of n x n cells, k x k squares in each, with rectangles of squares (x0, y0, x1, y1)
+ * removed. */
 static maps_list plane_with_holes(int n, int k, double angle, int n_holes, const int (*hole)[4],
                                   maps_rng *r) {
     maps_list l = maps_plane(n * k, n, n, 0, angle, 0.1 * (angle != 0), 0, r);
@@ -127,7 +129,8 @@ static void merging_holes_are_refused(void **state) {
     assert_non_null(strstr(qc_ctx_error(ctx)->text, "the boundary loops through vertices"));
 }
 
-/* A handle whose tube is cut by a slot shorter than its girth: no loops merge, but a handle is lost. */
+/* A handle whose tube is cut by a slot shorter than its girth: no loops merge, but a handle is
+ * lost. */
 static void lost_handles_are_refused(void **state) {
     qc_ctx *ctx = *state;
     maps_rng r = {28};

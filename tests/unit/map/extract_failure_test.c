@@ -2,7 +2,7 @@
 #include "unit/map/maps.h"
 
 typedef struct host {
-    int64_t allocations, fail_at; /* the fail_at-th allocation fails; 0 = none                      */
+    int64_t allocations, fail_at; /* the fail_at-th allocation fails; 0 = none */
     int64_t blocks, polls, cancel_at;
     double fraction;
 } host;
@@ -63,8 +63,8 @@ static qc_polygon_mesh *soup(bool closed) {
     qc_ctx *ctx = maps_context();
     maps_rng r = {31};
     static const uint8_t one[1] = {1};
-    maps_list l = closed ? maps_voxels(1, one, 3, 2, 0.2, &r)
-                         : maps_plane(5, 4.5, 4.5, 0.2, 0.3, 0, 0, &r);
+    maps_list l =
+        closed ? maps_voxels(1, one, 3, 2, 0.2, &r) : maps_plane(5, 4.5, 4.5, 0.2, 0.3, 0, 0, &r);
     qc_corner_map *map = maps_finish(ctx, &l);
     qc_polygon_mesh *p = NULL;
     maps_ok(ctx, qc_corner_map_to_polygons(ctx, map, &p));

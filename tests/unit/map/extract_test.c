@@ -37,6 +37,20 @@ static void aligned_squares(void **state) {
             }
 }
 
+/* All mesh vertices at integers or halves: lattice points on vertices and edges, isolines along
+ * edges. */
+static void coincidences(void **state) {
+    qc_ctx *ctx = *state;
+    maps_rng r = {18};
+    for (int trial = 0; trial < 60; trial++) {
+        const int k = 2 + trial % 5, halves = 1 + trial % 2;
+        maps_list l = maps_plane(k, 6 * k, 6 * k, 1.0 / 6, 0, 0, 0, &r);
+        for (int32_t i = 0; i < 6 * l.n_faces; i++) l.uv[i] = round(halves * l.uv[i]) / halves;
+        maps_gauge(&l, &r);
+        extract_count(ctx, &l, 36 * k * k, 1, 1, 0);
+    }
+}
+
 static void coarse_triangles_hold_many_quads(void **state) {
     qc_ctx *ctx = *state;
     maps_rng r = {12};
@@ -55,8 +69,8 @@ static int32_t squares_inside(const double *polygon, int n) {
             for (int i = 0; i < n; i++) {
                 const double *a = polygon + 2 * i, *b = polygon + 2 * ((i + 1) % n);
                 for (int c = 0; c < 4; c++)
-                    inside &= (b[0] - a[0]) * (y + c / 2 - a[1]) >
-                              (b[1] - a[1]) * (x + c % 2 - a[0]);
+                    inside &=
+                        (b[0] - a[0]) * (y + c / 2 - a[1]) > (b[1] - a[1]) * (x + c % 2 - a[0]);
             }
             count += inside;
         }
@@ -84,8 +98,8 @@ static void turned_rectangles_match_the_reference(void **state) {
 static void tori(void **state) {
     qc_ctx *ctx = *state;
     maps_rng r = {14};
-    static const double basis[][4] = {{5, 0, 0, 4}, {6, 2, -1, 7}, {0, 5, -8, 1}, {3, 3, -4, 4},
-                                      {12, 0, 5, 3}};
+    static const double basis[][4] = {
+        {5, 0, 0, 4}, {6, 2, -1, 7}, {0, 5, -8, 1}, {3, 3, -4, 4}, {12, 0, 5, 3}};
     for (size_t i = 0; i < sizeof basis / sizeof *basis; i++)
         for (int k = 3; k < 12; k += 2) {
             const double *a = basis[i], *b = basis[i] + 2;
@@ -146,7 +160,8 @@ static void cones_of_many_turns(void **state) {
     }
 }
 
-/* --- the same quads from any charts ------------------------------------------------------------------ */
+/* --- the same quads from any charts
+ * ------------------------------------------------------------------ */
 
 static int compare_quads(const void *a, const void *b) {
     return memcmp(a, b, 4 * sizeof(int32_t));
@@ -239,6 +254,7 @@ static int tear_down(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(aligned_squares),
+        cmocka_unit_test(coincidences),
         cmocka_unit_test(coarse_triangles_hold_many_quads),
         cmocka_unit_test(turned_rectangles_match_the_reference),
         cmocka_unit_test(tori),

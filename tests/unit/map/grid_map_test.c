@@ -1,4 +1,5 @@
-/* Grid maps: exact transitions, cones on the lattice, slivers repaired, inconsistent maps refused. */
+/* Grid maps: exact transitions, cones on the lattice, slivers repaired, inconsistent maps refused.
+ */
 #include "unit/map/maps.h"
 
 /* Every transition holds exactly at both ends of every edge. */

@@ -58,8 +58,10 @@ static inline void maps_triangle(maps_list *l, const int32_t v[3], const double 
     memcpy(l->uv + 6 * (size_t)l->n_faces, uv, 6 * sizeof *uv);
     l->n_faces++;
 }
-/* Two triangles of a square with corners (x, y), (x+1, y), (x+1, y+1), (x, y+1), either diagonal. */
-static inline void maps_square(maps_list *l, const int32_t v[4], const double uv[8], bool diagonal) {
+/* Two triangles of a square with corners (x, y), (x+1, y), (x+1, y+1), (x, y+1), either diagonal.
+ */
+static inline void maps_square(maps_list *l, const int32_t v[4], const double uv[8],
+                               bool diagonal) {
     static const int split[2][2][3] = {{{0, 1, 2}, {0, 2, 3}}, {{0, 1, 3}, {1, 2, 3}}};
     for (int i = 0; i < 2; i++) {
         int32_t w[3];
@@ -100,8 +102,8 @@ static inline qc_corner_map *maps_finish(qc_ctx *ctx, maps_list *l) {
     return map;
 }
 
-/* k x k squares on [0, width] x [0, height], interior vertices moved by up to `jitter` squares; then the
- * parameters are turned by `angle` and shifted by (u, v). */
+/* k x k squares on [0, width] x [0, height], interior vertices moved by up to `jitter` squares;
+ * then the parameters are turned by `angle` and shifted by (u, v). */
 static inline maps_list maps_plane(int k, double width, double height, double jitter, double angle,
                                    double u, double v, maps_rng *r) {
     maps_list l = maps_list_create((k + 1) * (k + 1), 2 * k * k);
@@ -158,8 +160,8 @@ static inline maps_list maps_torus(int k, const double a[2], const double b[2], 
     return l;
 }
 
-/* Boundary of a set of unit voxels (size^3 flags), k x k squares a side, each side mapped to an n x n square of the
- * grid; vertices inside a side move by up to `jitter` squares. */
+/* Boundary of a set of unit voxels (size^3 flags), k x k squares a side, each side mapped to an n x
+ * n square of the grid; vertices inside a side move by up to `jitter` squares. */
 static inline maps_list maps_voxels(int size, const uint8_t *voxel, int k, double n, double jitter,
                                     maps_rng *r) {
     const int points = size * k + 1;
@@ -175,7 +177,8 @@ static inline maps_list maps_voxels(int size, const uint8_t *voxel, int k, doubl
             const int axis = side / 2, up = side % 2;
             int y[3] = {x[0], x[1], x[2]};
             y[axis] += up ? 1 : -1;
-            if (y[axis] >= 0 && y[axis] < size && voxel[y[0] + size * (y[1] + size * y[2])]) continue;
+            if (y[axis] >= 0 && y[axis] < size && voxel[y[0] + size * (y[1] + size * y[2])])
+                continue;
             const int a = (axis + (up ? 1 : 2)) % 3, b = (axis + (up ? 2 : 1)) % 3;
             for (int j = 0; j <= k; j++)
                 for (int i = 0; i <= k; i++) {
@@ -215,7 +218,8 @@ static inline maps_list maps_voxels(int size, const uint8_t *voxel, int k, doubl
     return l;
 }
 
-/* Disk around a cone of `turns` quarter turns with its centre at (u, v): rings of 8 sectors a quarter. */
+/* Disk around a cone of `turns` quarter turns with its centre at (u, v): rings of 8 sectors a
+ * quarter. */
 static inline maps_list maps_cone(int turns, int rings, double radius, double u, double v) {
     const int sectors = 4 * turns;
     maps_list l = maps_list_create(1 + rings * sectors, 2 * rings * sectors);
