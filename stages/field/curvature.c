@@ -80,7 +80,7 @@ static const qc_param table[] = {
                   "radius of that disk in edge lengths of the quads; never below two mean edges"),
     QC_PARAM_REAL(params, trusted, 0.3, 0, 1, "",
                   "part of each component's area whose directions are kept, most stable first"),
-    QC_PARAM_REAL(params, feature_weight, 10, 0, 1e6, "",
+    QC_PARAM_REAL(params, feature_weight, 2, 0, 1e6, "",
                   "weight of faces on feature edges, which follow their edge; 0 = ignore features"),
     QC_PARAM_BOOL(params, extend, true,
                   "transport the trusted directions to the other faces; off: trust every face"),

@@ -51,9 +51,9 @@ static const qc_port inputs[] = {
 };
 static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothed field"}};
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "",
+    QC_PARAM_REAL(params, lambda, 0.5, 0, 1, "",
                   "0 keeps the trusted directions, 1 ignores them and only smooths"),
-    QC_PARAM_REAL(params, detail, 1, 0, 100, "quad",
+    QC_PARAM_REAL(params, detail, 0.5, 0, 100, "quad",
                   "with relax: pairs of singularities nearer than about this many edge lengths of the "
                   "quads are closed; 0 = leave them"),
     QC_PARAM_INT(params, rounds, 20, 0, 1000, "",

@@ -43,7 +43,7 @@ static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothes
 static const qc_param table[] = {
     QC_PARAM_REAL(params, alignment, 1, 0, 1e6, "",
                   "pull of the guide's trusted faces against smoothness; 0, or no guide, ignores it"),
-    QC_PARAM_REAL(params, detail, 1, 0, 100, "quad",
+    QC_PARAM_REAL(params, detail, 0.5, 0, 100, "quad",
                   "pairs of singularities nearer than about this many edge lengths of the quads are "
                   "closed by a gradient flow with |x| = 1; 0 = leave them"),
 };
