@@ -67,7 +67,7 @@ static bool is_degree(int32_t n) { return n == 1 || n == 2 || n == 4; }
 /* `N F` is a .rawfield and F, N a .rosy; where both would fit the mesh (four faces), a .rawfield has them on
  * one line. */
 static qc_status read_header(scanner *s, const qc_mesh *mesh, layout *out) {
-    int32_t a, b;
+    int32_t a = 0, b = 0;
     qc_status status = next_count(s, &a);
     int64_t line = s->line;
     if (!status) status = next_count(s, &b);
