@@ -8,10 +8,17 @@
 
 enum { FACE_LIMIT = 2000, CHUNK = 512 };
 
+/* All that a visit needs, side by side: the visits jump about in memory. */
+typedef struct patch {
+    double corner[3][3], beta[3], area;
+    int32_t next[3]; /* face across halfedge k, -1 = boundary */
+} patch;
+
 typedef struct cycle_job {
     const qc_mesh *mesh;
     double radius;
-    const double *beta, *area, *real_axis, *imaginary_axis;
+    const double *real_axis, *imaginary_axis;
+    patch *patch; /* n_faces */
     double *shape;
     int64_t first;    /* face of index 0 of the parallel loop                        */
     int32_t *visited; /* n_faces per worker: last centre which reached the face, + 1  */
@@ -33,18 +40,17 @@ typedef struct ball {
     const double *u, *v;
 } ball;
 
-/* Adds halfedge h of a visited face, half of its edge's tensor (its twin adds the rest); its share inside. */
-static double add_halfedge(const cycle_job *j, ball *B, int32_t h, double *length) {
-    const double *p = j->mesh->position + 3 * (size_t)qc_halfedge_start(j->mesh, h);
-    const double *q = j->mesh->position + 3 * (size_t)qc_halfedge_end(j->mesh, h);
+/* Adds halfedge k of a visited face, half of its edge's tensor (its twin adds the rest); its share inside. */
+static double add_halfedge(const patch *face, int k, ball *B, double *length) {
+    const double *p = face->corner[k == 2 ? 0 : k + 1], *q = face->corner[k == 0 ? 2 : k - 1];
     double a[3], e[3];
     qc__sub(p, B->centre, a);
     qc__sub(q, p, e);
     double share = share_inside(a, e, B->radius);
     *length = sqrt(qc__dot(e, e));
-    double beta = j->beta[j->mesh->halfedge_edge[h]];
-    if (share > 0 && beta != 0) {
-        double w = beta * share / (2 * *length), eu = qc__dot(e, B->u), ev = qc__dot(e, B->v);
+    if (share > 0 && face->beta[k] != 0) {
+        double w = face->beta[k] * share / (2 * *length);
+        double eu = qc__dot(e, B->u), ev = qc__dot(e, B->v);
         B->a += w * eu * eu;
         B->b += w * eu * ev;
         B->d += w * ev * ev;
@@ -53,16 +59,15 @@ static double add_halfedge(const cycle_job *j, ball *B, int32_t h, double *lengt
 }
 
 static void gather(const cycle_job *j, int32_t centre, int32_t *visited, int32_t *queue, ball *B) {
-    const qc_mesh *mesh = j->mesh;
     int32_t head = 0, tail = 0;
     queue[tail++] = centre;
     visited[centre] = centre + 1;
     while (head < tail) {
-        int32_t t = queue[head++];
+        const patch *face = j->patch + queue[head++];
         double inside = 0, total = 0;
-        for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
-            double length, share = add_halfedge(j, B, h, &length);
-            int32_t next = mesh->twin[h] < 0 ? -1 : mesh->twin[h] / 3;
+        for (int k = 0; k < 3; k++) {
+            double length, share = add_halfedge(face, k, B, &length);
+            int32_t next = face->next[k];
             inside += share * length;
             total += length;
             if (next < 0 || !(share > 0) || visited[next] == centre + 1 || tail >= FACE_LIMIT)
@@ -70,19 +75,19 @@ static void gather(const cycle_job *j, int32_t centre, int32_t *visited, int32_t
             visited[next] = centre + 1;
             queue[tail++] = next;
         }
-        if (total > 0) B->area += j->area[t] * inside / total;
+        if (total > 0) B->area += face->area * inside / total;
     }
 }
 
 /* About the centroid; large enough to hold the edges of face t itself. */
 static ball centred_ball(const cycle_job *j, size_t t) {
     ball B = {{0, 0, 0}, j->radius, 0, 0, 0, 0, j->real_axis + 3 * t, j->imaginary_axis + 3 * t};
-    const int32_t *v = j->mesh->face_vertex + 3 * t;
+    const patch *face = j->patch + t;
     for (size_t k = 0; k < 3; k++)
-        for (size_t c = 0; c < 3; c++) B.centre[c] += j->mesh->position[3 * (size_t)v[k] + c] / 3;
+        for (size_t c = 0; c < 3; c++) B.centre[c] += face->corner[k][c] / 3;
     for (size_t k = 0; k < 3; k++) {
         double d[3];
-        qc__sub(j->mesh->position + 3 * (size_t)v[k], B.centre, d);
+        qc__sub(face->corner[k], B.centre, d);
         B.radius = fmax(B.radius, 1.5 * sqrt(qc__dot(d, d)));
     }
     return B;
@@ -90,8 +95,7 @@ static ball centred_ball(const cycle_job *j, size_t t) {
 
 static void cycle_faces(void *arg, int64_t begin, int64_t end, uint32_t worker) {
     const cycle_job *j = arg;
-    const qc_mesh *mesh = j->mesh;
-    int32_t *visited = j->visited + (size_t)worker * (size_t)mesh->n_faces;
+    int32_t *visited = j->visited + (size_t)worker * (size_t)j->mesh->n_faces;
     int32_t *queue = j->queue + (size_t)worker * FACE_LIMIT;
     for (int64_t i = begin; i < end; i++) {
         size_t t = (size_t)(j->first + i);
@@ -104,15 +108,30 @@ static void cycle_faces(void *arg, int64_t begin, int64_t end, uint32_t worker) 
     }
 }
 
+static void fill_patches(const qc_mesh *mesh, const double *beta, const double *area, patch *out) {
+    for (size_t t = 0; t < (size_t)mesh->n_faces; t++) {
+        out[t].area = area[t];
+        for (size_t k = 0; k < 3; k++) {
+            size_t h = 3 * t + k;
+            const double *p = mesh->position + 3 * (size_t)mesh->face_vertex[h];
+            for (size_t c = 0; c < 3; c++) out[t].corner[k][c] = p[c];
+            out[t].beta[k] = beta[mesh->halfedge_edge[h]];
+            out[t].next[k] = mesh->twin[h] < 0 ? -1 : mesh->twin[h] / 3;
+        }
+    }
+}
+
 qc_status qc__curvature_normal_cycle(qc_ctx *ctx, const qc_mesh *mesh, double radius,
                                      const double *beta, const double *area,
                                      const double *real_axis, const double *imaginary_axis,
                                      double *shape) {
     size_t workers = qc_ctx_threads(ctx), F = (size_t)mesh->n_faces;
-    cycle_job job = {mesh, radius, beta, area, real_axis, imaginary_axis, shape, 0, NULL, NULL};
+    cycle_job job = {mesh, radius, real_axis, imaginary_axis, NULL, shape, 0, NULL, NULL};
+    job.patch = QC__NEW(ctx, patch, F);
     job.visited = QC__ZERO(ctx, int32_t, workers * F);
     job.queue = QC__NEW(ctx, int32_t, workers * FACE_LIMIT);
-    qc_status status = job.visited && job.queue ? QC_OK : QC_ERR_NOMEM;
+    qc_status status = job.patch && job.visited && job.queue ? QC_OK : QC_ERR_NOMEM;
+    if (!status) fill_patches(mesh, beta, area, job.patch);
     /* Slices keep the time between two progress calls short. */
     int64_t slice = CHUNK * 4 * (int64_t)workers;
     for (job.first = 0; !status && job.first < mesh->n_faces; job.first += slice) {
@@ -120,6 +139,7 @@ qc_status qc__curvature_normal_cycle(qc_ctx *ctx, const qc_mesh *mesh, double ra
         qc__parallel_for(ctx, n, CHUNK, cycle_faces, &job);
         if (!qc__progress(ctx, (double)(job.first + n) / mesh->n_faces)) status = QC_ERR_CANCELLED;
     }
+    qc__free(job.patch);
     qc__free(job.visited);
     qc__free(job.queue);
     return status;
