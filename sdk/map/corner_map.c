@@ -15,8 +15,8 @@ static void corner_map_destroy(qc_object *object) {
     qc__free(map);
 }
 
-static qc_status check_input(qc_ctx *ctx, const qc_mesh *mesh, const double *uv,
-                             double edge_length, const qc_complex *cross) {
+static qc_status check_input(qc_ctx *ctx, const qc_mesh *mesh, const double *uv, double edge_length,
+                             const qc_complex *cross) {
     if (!mesh || !uv) return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "mesh or uv is NULL");
     if (!(edge_length >= 0) || !isfinite(edge_length))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1,

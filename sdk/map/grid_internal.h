@@ -1,4 +1,5 @@
-/* Exact arithmetic on grid maps (ROBUST 2): points in grid units and the transitions between charts. */
+/* Exact arithmetic on grid maps (ROBUST 2): points in grid units and the transitions between
+ * charts. */
 #ifndef QC_MAP_GRID_INTERNAL_H
 #define QC_MAP_GRID_INTERNAL_H
 
@@ -13,10 +14,14 @@ typedef struct qc__point {
 /* i^r p */
 static inline qc__point qc__turn(qc__point p, int r) {
     switch (r & 3) {
-    case 1: return (qc__point){-p.v, p.u};
-    case 2: return (qc__point){-p.u, -p.v};
-    case 3: return (qc__point){p.v, -p.u};
-    default: return p;
+    case 1:
+        return (qc__point){-p.v, p.u};
+    case 2:
+        return (qc__point){-p.u, -p.v};
+    case 3:
+        return (qc__point){p.v, -p.u};
+    default:
+        return p;
     }
 }
 
@@ -29,7 +34,9 @@ static inline qc__point qc__plus(qc__point p, qc__point q) {
 }
 
 /* Twice the signed area spanned by two vectors; exact for |components| < 2^31. */
-static inline int64_t qc__cross(qc__point a, qc__point b) { return a.u * b.v - a.v * b.u; }
+static inline int64_t qc__cross(qc__point a, qc__point b) {
+    return a.u * b.v - a.v * b.u;
+}
 
 static inline qc__point qc__grid_corner(const qc_grid_map *g, int32_t c) {
     const int32_t *p = g->uv + 2 * (int64_t)c;
@@ -53,8 +60,8 @@ static inline qc__point qc__grid_transition(const qc_grid_map *g, int32_t h, qc_
     return qc__turn(qc__minus(p, tau), 4 - g->rotation[e]);
 }
 
-/* Whether axis direction d (0 = +u, 1 = +v, ...) is in the half-open sector [a, b) of less than half a
- * turn, or in [a, b] when closed. */
+/* Whether axis direction d (0 = +u, 1 = +v, ...) is in the half-open sector [a, b) of less than
+ * half a turn, or in [a, b] when closed. */
 static inline bool qc__in_sector(qc__point a, qc__point b, bool closed, int d) {
     const qc__point axis = qc__turn((qc__point){1, 0}, d);
     const int64_t from_a = qc__cross(a, axis), to_b = qc__cross(axis, b);
@@ -75,7 +82,7 @@ typedef struct qc__grid_build {
     const qc_mesh *mesh;
     const double *uv; /* 6 n_faces, shifted so that every component is near the origin */
     const int8_t *known_rotation; /* of the corner map, or NULL */
-    double tolerance; /* parameter units */
+    double tolerance;             /* parameter units */
     int32_t bits;
     int32_t *grid_uv;
     int8_t *rotation, *holonomy;
@@ -86,8 +93,8 @@ typedef struct qc__grid_build {
 qc_status qc__grid_seams(qc__grid_build *b);
 /* grid_uv and holonomy, from one representative a vertex (grid_vertices.c). */
 qc_status qc__grid_vertices(qc__grid_build *b);
-/* Undoes orientations which rounding spoiled: moves regular interior vertices by a few grid units (grid_repair.c);
- * coordinates which are integers stay. */
+/* Undoes orientations which rounding spoiled: moves regular interior vertices by a few grid units
+ * (grid_repair.c); coordinates which are integers stay. */
 qc_status qc__grid_repair(qc_ctx *ctx, qc_grid_map *g, int32_t *uv);
 /* Writes all corners of vertex v from the value p at its first corner. */
 void qc__grid_spread(const qc_grid_map *g, int32_t v, qc__point p, int32_t *uv);

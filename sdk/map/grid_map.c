@@ -16,8 +16,8 @@ static void grid_map_destroy(qc_object *object) {
     qc__free(g);
 }
 
-/* Copies the parameters; a component which lies farther from the origin than it is wide is shifted there
- * by an integer (an automorphism of the grid). low, high: 2 n_components each. */
+/* Copies the parameters; a component which lies farther from the origin than it is wide is shifted
+ * there by an integer (an automorphism of the grid). low, high: 2 n_components each. */
 static void center(const qc_corner_map *map, double *low, double *high, double *uv) {
     const qc_mesh *m = map->mesh;
     for (int32_t i = 0; i < 2 * m->n_components; i++) {
@@ -51,7 +51,8 @@ static qc_status choose_bits(qc__grid_build *b) {
     if (b->bits >= 4) return QC_OK;
     return qc__fail(b->ctx, QC_ERR_FAILED, where,
                     "face %d has a parameter of %.3g; the grid holds at most 6e7 quads across, try "
-                    "a coarser density", (int)where, extent);
+                    "a coarser density",
+                    (int)where, extent);
 }
 
 static void count_orientations(qc_grid_map *g) {
@@ -99,7 +100,10 @@ qc_status qc_grid_map_create(qc_ctx *ctx, const qc_corner_map *map, double toler
     qc_status status = uv && low && high ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         center(map, low, high, uv);
-        qc__grid_build b = {.ctx = ctx, .mesh = m, .uv = uv, .known_rotation = map->rotation,
+        qc__grid_build b = {.ctx = ctx,
+                            .mesh = m,
+                            .uv = uv,
+                            .known_rotation = map->rotation,
                             .tolerance = tolerance > 0 ? tolerance : 0.05};
         status = build(&b, g);
     }
@@ -113,8 +117,8 @@ qc_status qc_grid_map_create(qc_ctx *ctx, const qc_corner_map *map, double toler
     return status;
 }
 
-qc_status qc_grid_map_to_corner_map(qc_ctx *ctx, const qc_grid_map *grid,
-                                    const qc_corner_map *like, qc_corner_map **out) {
+qc_status qc_grid_map_to_corner_map(qc_ctx *ctx, const qc_grid_map *grid, const qc_corner_map *like,
+                                    qc_corner_map **out) {
     if (!grid) return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "grid is NULL");
     if (like && like->mesh->n_faces != grid->mesh->n_faces)
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "grid has %d faces, like has %d",

@@ -11,14 +11,20 @@ static double complex value(const qc__grid_build *b, int32_t c) {
 
 static double complex quarter_turns(double complex z, int r) {
     switch (r & 3) {
-    case 1: return -cimag(z) + I * creal(z);
-    case 2: return -z;
-    case 3: return cimag(z) - I * creal(z);
-    default: return z;
+    case 1:
+        return -cimag(z) + I * creal(z);
+    case 2:
+        return -z;
+    case 3:
+        return cimag(z) - I * creal(z);
+    default:
+        return z;
     }
 }
 
-static double max_norm(double complex z) { return fmax(fabs(creal(z)), fabs(cimag(z))); }
+static double max_norm(double complex z) {
+    return fmax(fabs(creal(z)), fabs(cimag(z)));
+}
 
 /* Residual of f_t = i^r f_s + tau at both ends of the edge, tau rounded from their mean. */
 static double residual(const double complex s[2], const double complex t[2], int r,
@@ -39,10 +45,11 @@ static qc_status seam_error(const qc__grid_build *b, int32_t e, double amount, b
                         "domain to tell the rotation across it; remove degenerate faces or try a "
                         "finer density",
                         (int)e, (int)v, (int)w, (int)(h / 3), (int)(k / 3));
-    return qc__fail(b->ctx, QC_ERR_FAILED, e,
-                    "seam at edge %d (vertices %d, %d; faces %d, %d) is off by %.3g parameter units; "
-                    "the map must be integer-seamless to %.3g",
-                    (int)e, (int)v, (int)w, (int)(h / 3), (int)(k / 3), amount, b->tolerance);
+    return qc__fail(
+        b->ctx, QC_ERR_FAILED, e,
+        "seam at edge %d (vertices %d, %d; faces %d, %d) is off by %.3g parameter units; "
+        "the map must be integer-seamless to %.3g",
+        (int)e, (int)v, (int)w, (int)(h / 3), (int)(k / 3), amount, b->tolerance);
 }
 
 static qc_status seam(qc__grid_build *b, int32_t e) {

@@ -1,5 +1,6 @@
-/* Rounding of an integer-seamless map to the grid (ROBUST 1 and 2): one representative a vertex is rounded,
- * or set to the fixed point of the transitions around it; the other corners follow exactly. */
+/* Rounding of an integer-seamless map to the grid (ROBUST 1 and 2): one representative a vertex is
+ * rounded, or set to the fixed point of the transitions around it; the other corners follow
+ * exactly. */
 #include <math.h>
 
 #include "sdk/map/grid_internal.h"
@@ -36,9 +37,12 @@ static transform around(const qc__grid_build *b, int32_t v) {
 /* Twice the fixed point of z -> i^r z + t, r != 0: 2 t / (1 - i^r). */
 static qc__point twice_fixed_point(transform g) {
     switch (g.r) {
-    case 1: return (qc__point){g.t.u - g.t.v, g.t.u + g.t.v};
-    case 2: return g.t;
-    default: return (qc__point){g.t.u + g.t.v, g.t.v - g.t.u};
+    case 1:
+        return (qc__point){g.t.u - g.t.v, g.t.u + g.t.v};
+    case 2:
+        return g.t;
+    default:
+        return (qc__point){g.t.u + g.t.v, g.t.v - g.t.u};
     }
 }
 
@@ -51,7 +55,8 @@ static qc_status representative(qc__grid_build *b, int32_t v, qc__point *out) {
         if (g.t.u != 0 || g.t.v != 0)
             return qc__fail(b->ctx, QC_ERR_FAILED, v,
                             "the transitions around vertex %d do not close: a translation (%d, %d) "
-                            "is left over", (int)v, (int)g.t.u, (int)g.t.v);
+                            "is left over",
+                            (int)v, (int)g.t.u, (int)g.t.v);
         *out = (qc__point){llrint(f[0] * (double)unit), llrint(f[1] * (double)unit)};
         return QC_OK;
     }
@@ -65,7 +70,8 @@ static qc_status representative(qc__grid_build *b, int32_t v, qc__point *out) {
     return QC_OK;
 }
 
-/* All corners of v from p at its first one. Fails when a corner moves by more than the tolerance allows. */
+/* All corners of v from p at its first one. Fails when a corner moves by more than the tolerance
+ * allows. */
 static qc_status spread(qc__grid_build *b, int32_t v, qc__point p) {
     const qc_mesh *m = b->mesh;
     const int32_t first = m->vertex_corner[v];
@@ -81,7 +87,8 @@ static qc_status spread(qc__grid_build *b, int32_t v, qc__point p) {
         if (!(moved <= limit))
             return qc__fail(b->ctx, QC_ERR_FAILED, v,
                             "the map is inconsistent around vertex %d: face %d is off by %.3g "
-                            "parameter units", (int)v, (int)(c / 3), moved);
+                            "parameter units",
+                            (int)v, (int)(c / 3), moved);
         b->grid_uv[2 * (int64_t)c] = (int32_t)u;
         b->grid_uv[2 * (int64_t)c + 1] = (int32_t)w;
         if (m->twin[qc_next(c)] < 0) break;
@@ -91,7 +98,8 @@ static qc_status spread(qc__grid_build *b, int32_t v, qc__point p) {
     return QC_OK;
 }
 
-/* Axis directions in the sectors around an interior vertex; -1 when a face there is not positive. */
+/* Axis directions in the sectors around an interior vertex; -1 when a face there is not positive.
+ */
 static int count_directions(const qc_grid_map *g, int32_t v) {
     const int32_t first = g->mesh->vertex_corner[v];
     int32_t c = first;
@@ -104,14 +112,17 @@ static int count_directions(const qc_grid_map *g, int32_t v) {
     return n;
 }
 
-/* A cone whose angle is 4 pi, 6 pi, ... has no holonomy, so nothing pinned it (ROBUST 1): put it on its
- * lattice point. */
+/* A cone whose angle is 4 pi, 6 pi, ... has no holonomy, so nothing pinned it (ROBUST 1): put it on
+ * its lattice point. */
 static qc_status pin_full_turns(qc__grid_build *b) {
     const qc_mesh *m = b->mesh;
-    const qc_grid_map view = {.mesh = m, .bits = b->bits, .uv = b->grid_uv,
-                              .rotation = b->rotation, .translation = b->translation};
+    const qc_grid_map view = {.mesh = m,
+                              .bits = b->bits,
+                              .uv = b->grid_uv,
+                              .rotation = b->rotation,
+                              .translation = b->translation};
     const double unit = (double)((int64_t)1 << b->bits);
-    bool folded = false; /* next to a fold-over the angle of a regular vertex may be any multiple      */
+    bool folded = false; /* next to a fold-over the angle of a regular vertex may be any multiple */
     for (int32_t t = 0; t < m->n_faces && !folded; t++)
         folded = qc_grid_map_orientation(&view, t) <= 0;
     for (int32_t v = 0; v < m->n_vertices; v++) {
@@ -125,9 +136,12 @@ static qc_status pin_full_turns(qc__grid_build *b) {
         const double off = fmax(fabs((double)p.u / unit - u), fabs((double)p.v / unit - w));
         if (off > b->tolerance && folded) continue;
         if (off > b->tolerance)
-            return qc__fail(b->ctx, QC_ERR_FAILED, v,
-                            "the cone of %d quarter turns at vertex %d is %.3g parameter units off "
-                            "the lattice", n, (int)v, off);
+            return qc__fail(
+                b->ctx, QC_ERR_FAILED, v,
+                "the map makes %d quarter turns around vertex %d, which is %.3g parameter "
+                "units off the lattice: a cone there or next to it is folded in; try a "
+                "finer density or other integers",
+                n, (int)v, off);
         const qc_status status =
             spread(b, v, (qc__point){(int64_t)(u * unit), (int64_t)(w * unit)});
         if (status != QC_OK) return status;

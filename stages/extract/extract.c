@@ -28,7 +28,6 @@ static const qc_param params[] = {
                   "largest seam mismatch taken for rounding noise, in parameter units (0 = 0.05)"),
 };
 
-const qc_stage qc_stage_extract;
 const qc_stage qc_stage_extract = {
     QC_STAGE_SIZES,
     "qc.extract",

@@ -130,7 +130,7 @@ static void cone_of_two_turns_is_pinned(void **state) {
         const qc_status status = qc_grid_map_create(ctx, map, 0, &grid);
         assert_int_equal(status, far ? QC_ERR_FAILED : QC_OK);
         if (far) {
-            assert_non_null(strstr(qc_ctx_error(ctx)->text, "cone of 8 quarter turns at vertex 0"));
+            assert_non_null(strstr(qc_ctx_error(ctx)->text, "8 quarter turns around vertex 0"));
         } else {
             const int32_t *p = grid->uv + 2 * grid->mesh->vertex_corner[0];
             assert_int_equal(p[0], 2 << grid->bits);
