@@ -9,7 +9,7 @@
 #include "sdk/dec/internal.h"
 
 enum { MAX_PASSES = 4 };
-static const double NEGLIGIBLE = 1e-14; /* of the largest value of the form */
+static const double NEGLIGIBLE = 1e-14, TOLERABLE = 1e-9; /* of the largest value of the form */
 
 static double largest(int32_t n, const qc_complex *z) {
     double max = 0;
@@ -40,24 +40,44 @@ static bool work_create(qc_ctx *ctx, const qc_mesh *m, const qc_complex *z, work
     return true;
 }
 
+/* The curl of w->form as right-hand side, where v is an unknown: at an edge fixed for the sake of
+ * the constants it vanishes with all the others, if the values of each face sum to zero. */
+static qc_status remaining_curl(qc_ctx *ctx, const qc_cover *cover, const qc__system *system,
+                                const qc_complex *form, qc_complex *curl) {
+    const qc_status status = qc_form_weak_curl_edges(ctx, cover, form, curl);
+    for (int32_t e = 0; status == QC_OK && e < cover->mesh->n_edges; e++)
+        if (system->stiffness->unknown[e] < 0) curl[e] = (qc_complex){0, 0};
+    return status;
+}
+
+static qc_status check_curl(qc_ctx *ctx, const qc_mesh *m, const qc_complex *curl, double size) {
+    for (int32_t e = 0; e < m->n_edges; e++)
+        if (!(fmax(fabs(curl[e].re), fabs(curl[e].im)) <= TOLERABLE * size))
+            return qc__fail(ctx, QC_ERR_FAILED, e,
+                            "the curl at edge %d cannot be removed; repair the mesh (faces "
+                            "almost without area)",
+                            (int)e);
+    return QC_OK;
+}
+
 /* Removes curl from w->form until it is negligible or no longer falls. */
 static qc_status remove_passes(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
                                const qc__system *system, work *w) {
     const qc_mesh *m = cover->mesh;
     const double size = largest(3 * m->n_faces, w->form);
     double last = INFINITY;
-    for (int pass = 0; pass < MAX_PASSES; pass++) {
-        qc_status status = qc_form_weak_curl_edges(ctx, cover, w->form, w->dv);
+    for (int pass = 0;; pass++) {
+        qc_status status = remaining_curl(ctx, cover, system, w->form, w->dv);
         if (status != QC_OK) return status;
         const double curl = largest(m->n_edges, w->dv);
-        if (curl <= NEGLIGIBLE * size || curl > 0.5 * last) return QC_OK;
+        if (curl <= NEGLIGIBLE * size || curl > 0.5 * last || pass == MAX_PASSES)
+            return check_curl(ctx, m, w->dv, size);
         last = curl;
         status = qc__system_solve(ctx, system, w->dv);
         if (status != QC_OK) return status;
         qc__subtract_rotation(cover, cotangent, w->dv, w->form, w->form);
         for (int32_t e = 0; e < m->n_edges; e++) w->v[e] = qc__add(w->v[e], w->dv[e]);
     }
-    return QC_OK;
 }
 
 static qc_status run(qc_ctx *ctx, const qc_cover *cover, const double *cotangent, work *w) {

@@ -94,13 +94,14 @@ enum {
 /* z = potential + copotential + harmonic; each 3 n_faces, any may be NULL. Closed meshes as in the
  * theorem; with boundary the co-potential vanishes there (the potential in the nonconforming
  * version); on a covering functions at vertices vanish at the branch points. Errors: ARGUMENT
- * (version), NOT_POSDEF (where = edge or vertex: faces without area), NOMEM, CANCELLED. */
+ * (version), NOT_POSDEF and FAILED as below (where = edge or vertex), NOMEM, CANCELLED. */
 QC_API qc_status qc_hodge_decompose(qc_ctx *ctx, const qc_cover *cover, int32_t version,
                                     const qc_complex *z, qc_complex *potential,
                                     qc_complex *copotential, qc_complex *harmonic);
-/* Removes the curl: Z^ = Z - J grad v with L* v = r (6.1), the curl-free form closest to Z. out may
- * be z or NULL, v (n_edges) and energy may be NULL; *energy = E_D = 1/2 |J grad v|^2 = 1/2 v^H L*
- * v. Errors: NOT_POSDEF (where = edge: faces without area), NOMEM, CANCELLED. */
+/* Removes the curl: Z^ = Z - J grad v with L* v = r (6.1), the curl-free form closest to Z, to machine
+ * precision of max |Z| even on slivers. out may be z or NULL, v (n_edges) and energy may be NULL;
+ * *energy = E_D = 1/2 |J grad v|^2 = 1/2 v^H L* v. Errors: NOT_POSDEF (where = edge: faces without
+ * area), FAILED (where = edge: curl above 1e-9 max |Z| is left there), NOMEM, CANCELLED. */
 QC_API qc_status qc_hodge_remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
                                       const qc_complex *z, qc_complex *out, qc_complex *v,
                                       double *energy);
