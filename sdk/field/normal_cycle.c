@@ -3,10 +3,11 @@
  * Its principal directions are swapped against the shape operator's, so it enters as J T J^T.
  *
  * The part of the surface in B is found breadth first from the face, so the cost is the number of faces in
- * the balls; at most FACE_LIMIT faces are visited, which bounds it (the ball is then effectively smaller). */
+ * the balls; at most FACE_LIMIT faces are visited, which bounds it: the ball is then effectively smaller, but
+ * an average over so many faces is free of noise anyway. */
 #include "internal.h"
 
-enum { FACE_LIMIT = 2000, CHUNK = 512 };
+enum { FACE_LIMIT = 300, CHUNK = 512 };
 
 /* All that a visit needs, side by side: the visits jump about in memory. */
 typedef struct patch {
