@@ -6,8 +6,8 @@ run 0 remesh in.obj -o quads.obj --quads 600 --stats stats.json --set round.radi
 cp stats.json out
 for key in quadcover input vertices faces genus boundaries components density edge_length \
     target_quads field singularities index4 -1 1 energy E_D E_H E_D_rel E_H_rel E_H_direct_rel \
-    iterations evaluations uv flipped degenerate max_seam_error arap_mean quads non_quads irregular \
-    euler rsd_edge rsd_angle hausdorff_rel mean_dist_rel seconds total stages peak_rss_mb warnings \
+    iterations evaluations uv flipped degenerate max_seam_error arap_mean quads non_quads \
+    irregular euler rsd_edge rsd_angle hausdorff_rel mean_dist_rel seconds total stages peak_rss_mb warnings \
     pipeline versions; do
     out_says "\"$key\": "
 done
