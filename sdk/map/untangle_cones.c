@@ -59,20 +59,68 @@ int32_t qc__map_turns(const qc__guide *g, int32_t v) {
     return (int32_t)lround(sum / quarter);
 }
 
-void qc__lay_out_star(const qc__guide *g, int32_t v, double scale) {
+/* The edges of a star by developed angle. */
+enum { LARGEST_STAR = 256 };
+typedef struct star {
+    int32_t n;
+    int32_t corner[LARGEST_STAR]; /* corner of v whose next corner is the neighbour                  */
+    double angle[LARGEST_STAR];   /* guided direction in the chart of that corner                    */
+    double bend[LARGEST_STAR];    /* wanted minus guided direction                                   */
+    bool anchor[LARGEST_STAR];
+} star;
+
+/* Directions of the guiding field; neighbours which cannot move are anchors with their true direction. */
+static bool read_star(const qc__guide *g, int32_t v, star *s) {
     const qc__reduced_map *m = g->map;
     const int32_t start = m->mesh->vertex_corner[v];
     int32_t c = start;
+    s->n = 0;
     do {
+        if (s->n == LARGEST_STAR) return false;
         const int32_t n = qc_next(c), w = m->mesh->face_vertex[n];
-        if (!m->pinned[w]) {
-            qc_complex a, b;
-            guided_edges(g, c, &a, &b);
+        qc_complex a, b;
+        guided_edges(g, c, &a, &b);
+        s->corner[s->n] = c;
+        s->angle[s->n] = atan2(a.im, a.re);
+        s->anchor[s->n] = m->pinned[w];
+        s->bend[s->n] = 0;
+        if (m->pinned[w]) {
             const qc_complex p = qc__reduced_map_corner(m, m->value[v], c);
-            const qc_complex local = {p.re + scale * a.re - m->offset[n].re,
-                                      p.im + scale * a.im - m->offset[n].im};
-            m->value[w] = qc_quarter_turn(local, -m->turn[n]);
+            const qc_complex q = qc__reduced_map_corner(m, m->value[w], n);
+            const qc_complex d = {q.re - p.re, q.im - p.im};
+            if (d.re != 0 || d.im != 0) s->bend[s->n] = angle_between(a, d);
         }
+        s->n++;
         c = qc_corner_ccw(m->mesh, c);
     } while (c >= 0 && c != start);
+    return true;
+}
+
+/* Between anchors the bend is interpolated by position in the star. */
+static void spread_bends(star *s) {
+    for (int32_t j = 0; j < s->n; j++) {
+        if (s->anchor[j]) continue;
+        int32_t before = 0, after = 0;
+        while (before < s->n && !s->anchor[(j - before + s->n) % s->n]) before++;
+        while (after < s->n && !s->anchor[(j + after) % s->n]) after++;
+        if (before == s->n) return; /* no anchor at all */
+        const double x = s->bend[(j - before + s->n) % s->n], y = s->bend[(j + after) % s->n];
+        s->bend[j] = (x * after + y * before) / (before + after);
+    }
+}
+
+void qc__lay_out_star(const qc__guide *g, int32_t v, double scale) {
+    const qc__reduced_map *m = g->map;
+    star s;
+    if (!read_star(g, v, &s)) return;
+    spread_bends(&s);
+    for (int32_t j = 0; j < s.n; j++) {
+        const int32_t c = s.corner[j], n = qc_next(c), w = m->mesh->face_vertex[n];
+        if (s.anchor[j]) continue;
+        const qc_complex e = g->edge[qc_prev(c)], p = qc__reduced_map_corner(m, m->value[v], c);
+        const double r = scale * hypot(e.re, e.im), angle = s.angle[j] + s.bend[j];
+        const qc_complex local = {p.re + r * cos(angle) - m->offset[n].re,
+                                  p.im + r * sin(angle) - m->offset[n].im};
+        m->value[w] = qc_quarter_turn(local, -m->turn[n]);
+    }
 }

@@ -26,6 +26,9 @@ qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_len
                                double *area);
 /* Energy and gradient at x (2 n_vertices). */
 double qc__patch_energy(const qc__patch *patch, const double *x, double *gradient);
+/* Lowers the energy from x until the patch is clean, or no better; x in place. */
+qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *patch, const qc_untangle_options *options,
+                             double *x);
 /* Smallest det J over the faces of the patch. */
 double qc__patch_min_det(const qc__patch *patch, const double *x);
 

@@ -16,8 +16,8 @@ static const qc_port out[] = {
 };
 static const qc_param table[] = {
     QC_PARAM_BOOL(params, enabled, true, "false: only writes the map on the exact grid"),
-    QC_PARAM_INT(params, rounds, 50, 1, 1000, "", "outer rounds for each neighbourhood"),
-    QC_PARAM_INT(params, iterations, 400, 1, 100000, "", "L-BFGS iterations in a round"),
+    QC_PARAM_INT(params, rounds, 20, 1, 1000, "", "outer rounds for each neighbourhood"),
+    QC_PARAM_INT(params, iterations, 200, 1, 100000, "", "L-BFGS iterations in a round"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {

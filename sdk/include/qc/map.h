@@ -124,7 +124,7 @@ typedef struct qc_untangle_options {
     int32_t max_rounds;     /* outer rounds (epsilon)                                               */
     int32_t max_iterations; /* L-BFGS iterations a round                                            */
 } qc_untangle_options;
-#define QC_UNTANGLE_OPTIONS_INIT { sizeof(qc_untangle_options), 50, 400 }
+#define QC_UNTANGLE_OPTIONS_INIT { sizeof(qc_untangle_options), 20, 200 }
 /* Moves the parameters, keeping all transitions and lattice points, until every face is positively oriented
  * by the exact test. *out is the best map found, its remaining fold-overs in n_flipped / n_degenerate of a
  * qc_grid_map_create. */
