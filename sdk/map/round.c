@@ -8,9 +8,13 @@
 
 enum {
     LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly        */
-    DENSITY_ROUNDS = 8,
+    DENSITY_ROUNDS = 24,
+    NEWTON_ROUNDS = 5, /* of these; then scales about the best are scanned                         */
     REACH = 3 /* target edge lengths within which cones are kept apart                            */
 };
+
+static const double slack = 1e-9;    /* deviations nearer than that are equal                          */
+static const double promised = 0.05; /* deviation of the number of quads which is good enough           */
 
 typedef struct rounding {
     qc_ctx *ctx;
@@ -160,7 +164,7 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     r->evaluations += result.evaluations;
     *quads = expected_quads(r->mesh, r->trial);
     const double miss = wanted > 0 ? fabs(*quads / wanted - 1.0) : 0.0;
-    if (r->best_scale > 0 && miss >= r->best_miss) return QC_OK;
+    if (r->best_scale > 0 && miss >= r->best_miss - slack) return QC_OK;
     qc_complex *swap = r->best;
     r->best = r->trial;
     r->trial = swap;
@@ -173,16 +177,22 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
 
 static qc_status meet_density(rounding *r) {
     const double wanted = r->seamless->sizing->target_quads;
-    double scale = 1.0;
+    double scale = 1.0, middle = 1.0;
     for (int32_t i = 0; i < DENSITY_ROUNDS; i++) {
         if (!qc__progress(r->ctx, 0.7 + 0.3 * i / DENSITY_ROUNDS)) return QC_ERR_CANCELLED;
         double quads = 0;
         const qc_status status = try_scale(r, scale, wanted, &quads);
         if (status != QC_OK) return status;
-        if (!(wanted > 0) || r->best_miss <= r->options.tolerance) break;
-        double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
-        factor = factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
-        scale *= i < DENSITY_ROUNDS / 2 ? factor : sqrt(factor);
+        if (!(wanted > 0) || r->best_miss <= r->options.tolerance + slack) break;
+        if (i < NEWTON_ROUNDS - 1) {
+            const double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
+            scale *= factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
+        } else { /* a map with few periods jumps: 1, -1, 2, -2, ... percent about the middle          */
+            if (i == NEWTON_ROUNDS - 1) middle = r->best_scale;
+            const int32_t k = i - NEWTON_ROUNDS + 1;
+            scale = middle * (1.0 + 0.01 * (k / 2 + 1) * (k % 2 ? -1 : 1));
+            if (r->best_miss <= promised) break;
+        }
     }
     return QC_OK;
 }

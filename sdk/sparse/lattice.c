@@ -57,7 +57,7 @@ static qc_status round_lattice(qc_ctx *ctx, qc__lattice *Q, const qc_lattice_opt
     if (!qc__progress(ctx, 0.0)) return QC_ERR_CANCELLED;
     qc_status status = decompose(ctx, Q->n, Q->P, greedy, C);
     if (status != QC_OK) return status;
-    for (int32_t i = 0; i < Q->n; i++) Q->z[i] = floor(Q->t[i] + 0.5);
+    for (int32_t i = 0; i < Q->n; i++) Q->z[i] = qc__lattice_nearest(Q->t[i]);
     const double direct = qc__lattice_gradient(Q);
     if (greedy) {
         const qc__range outer = qc__range_begin(ctx, NULL, 0.0, 0.5);

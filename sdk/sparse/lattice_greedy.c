@@ -26,8 +26,8 @@ static int64_t cheapest(const greedy *G) {
     double best_cost = INFINITY;
     for (int64_t i = 0; i < G->n; i++) {
         if (G->fixed[i]) continue;
-        const double d = floor(G->x[i] + 0.5) - G->x[i], cost = d * d / G->diagonal[i];
-        if (cost < best_cost || best < 0) {
+        const double d = qc__lattice_nearest(G->x[i]) - G->x[i], cost = d * d / G->diagonal[i];
+        if (best < 0 || cost < best_cost - qc__lattice_tie / G->diagonal[i]) {
             best_cost = cost;
             best = i;
         }
@@ -52,7 +52,7 @@ static void fix(greedy *G, const double *P, int64_t i) {
     const int64_t n = G->n;
     double *v = G->V + G->columns * n;
     next_column(G, i, v);
-    const double z = floor(G->x[i] + 0.5), step = (z - G->x[i]) / sqrt(G->diagonal[i]);
+    const double z = qc__lattice_nearest(G->x[i]), step = (z - G->x[i]) / sqrt(G->diagonal[i]);
     G->fixed[i] = true;
     for (int64_t j = 0; j < n; j++) {
         if (G->fixed[j]) continue;

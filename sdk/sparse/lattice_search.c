@@ -10,7 +10,7 @@
 #include <math.h>
 
 /* A move counts when it gains more than this part of the energy and of the P_ii involved. */
-static const double least_gain = 1e-12;
+static const double least_gain = 1e-10;
 
 typedef struct search {
     qc__lattice *Q;
@@ -36,7 +36,7 @@ static bool improve_one(search *W) {
     double best_change = -W->gain;
     for (int64_t i = 0; i < Q->n; i++) {
         const double change = W->half[i] - fabs(Q->g[i]);
-        if (change < best_change) {
+        if (change < best_change - qc__lattice_tie * W->half[i]) {
             best_change = change;
             best = i;
         }
@@ -57,7 +57,7 @@ static bool improve_two(search *W, int64_t i) {
         const double a = W->half[i] + sign * Q->g[i];
         for (int64_t j = 0; j < Q->n; j++) {
             const double change = a + (W->half[j] - fabs(Q->g[j] + sign * p[j]));
-            if (change < best_change && j != i) {
+            if (change < best_change - qc__lattice_tie * W->half[j] && j != i) {
                 best_change = change;
                 best_sign = sign;
                 best = j;
@@ -89,7 +89,7 @@ static bool improve_third(search *W, int64_t i, double si, int64_t j, double sj,
     if (any_third(Q->n, W->half, W->u, sj, p, limit))
         for (int64_t k = 0; k < Q->n; k++) {
             const double value = W->half[k] - fabs(W->u[k] + sj * p[k]);
-            if (value < best_value) {
+            if (value < best_value - (best < 0 ? 0 : qc__lattice_tie * W->half[k])) {
                 best_value = value;
                 best = k;
             }

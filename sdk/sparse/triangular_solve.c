@@ -104,7 +104,7 @@ typedef struct run {
     bool forward_only;
     int64_t nrhs, first_block;
     double *x;
-    double **work; /* by worker: Y, then t */
+    double **work; /* by block of one call: Y, then t */
 } run;
 
 static inline void solve_block(const int nb, const run *R, int64_t column, int64_t columns,
@@ -133,11 +133,12 @@ static inline void solve_block(const int nb, const run *R, int64_t column, int64
 
 static void run_blocks(void *arg, int64_t begin, int64_t end, uint32_t worker) {
     const run *R = arg;
+    (void)worker; /* may be any of the pool, also one beyond the blocks of this call */
     for (int64_t b = R->first_block + begin; b < R->first_block + end; b++) {
         const int64_t column = b * BLOCK, left = R->nrhs - column;
         const int64_t columns = left < BLOCK ? left : BLOCK;
         const int64_t nb = columns == 1 ? 1 : BLOCK;
-        double *Y = R->work[worker], *t = Y + NC * nb * R->F->S->n;
+        double *Y = R->work[b - R->first_block], *t = Y + NC * nb * R->F->S->n;
         if (nb == 1)
             solve_block(1, R, column, columns, Y, t);
         else
