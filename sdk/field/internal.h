@@ -50,6 +50,10 @@ static inline double qc__reference_length(const qc_mesh *mesh) { return sqrt(mes
 void qc__field_match(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *rho, const qc_complex *x,
                      int8_t *m, double *theta);
 
+/* Index of an interior vertex in quarters from the theta of its edges: an integer up to rounding. */
+double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
+                         int32_t p);
+
 /* Shape operator of a face in its frame, [a b; b d]: larger |eigenvalue| first in kappa[2]. */
 qc__cplx qc__principal(double a, double b, double d, double kappa[2]);
 

@@ -65,8 +65,8 @@ static double corner_angle(const qc_complex *edge, int32_t c) {
 }
 
 /* (K(p) + sum of +-theta) / (2 pi) in quarters; +theta where s -> t is counter-clockwise about p. */
-static double vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
-                            int32_t p) {
+double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
+                         int32_t p) {
     int32_t first = mesh->vertex_corner[p], c = first;
     double sum = 2 * QC__PI;
     do {
@@ -84,7 +84,7 @@ static qc_status measure_indices(qc_ctx *ctx, const qc_mesh *mesh, const qc_comp
     for (int32_t p = 0; p < mesh->n_vertices; p++) {
         o->index4[p] = 0;
         if (qc_vertex_on_boundary(mesh, p)) continue;
-        double index = vertex_index4(mesh, edge, o->theta, p), rounded = round(index);
+        double index = qc__vertex_index4(mesh, edge, o->theta, p), rounded = round(index);
         if (!(fabs(index - rounded) < 0.1))
             return qc__fail(ctx, QC_ERR_FAILED, p,
                             "the index %g/4 of vertex %d is no multiple of 1/4: repair the mesh "

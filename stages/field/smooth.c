@@ -7,7 +7,7 @@
 #include <string.h>
 
 typedef struct params {
-    double lambda, detail;
+    double lambda, detail, separate;
     int64_t rounds;
     bool relax;
 } params;
@@ -16,7 +16,7 @@ typedef struct params {
 
 /* Start: the field itself, or the minimiser of the same energy over x^4, which is convex. */
 static qc_status smooth_field(qc_ctx *ctx, const qc_face_field *field, const qc_sizing *sizing,
-                              const params *given, qc_complex *x) {
+                              const params *given, uint8_t *trusted, qc_complex *x) {
     const qc_mesh *mesh = field->mesh;
     double lambda = given->lambda, t = (1 - lambda) / fmax(lambda, 1e-6);
     double quad = sizing ? sizing->edge_length : sqrt(mesh->area / DEFAULT_QUADS);
@@ -28,26 +28,31 @@ static qc_status smooth_field(qc_ctx *ctx, const qc_face_field *field, const qc_
     if (!status)
         status = qc_field_smooth(ctx, mesh, field->x, field->weight, field->trusted, lambda,
                                  (int32_t)given->rounds, x);
+    if (!status && given->separate > 0)
+        status = qc_field_separate(ctx, mesh, given->separate * quad, trusted, x, NULL);
     return status;
 }
 
 static qc_status smooth(const qc_run *run, const void *p) {
     const qc_face_field *field = run->input(run, "field");
     const qc_mesh *mesh = field->mesh;
-    qc_complex *x = QC__NEW(run->ctx, qc_complex, mesh->n_faces);
-    if (!x) return QC_ERR_NOMEM;
+    size_t F = (size_t)mesh->n_faces;
+    qc_complex *x = QC__NEW(run->ctx, qc_complex, F);
+    uint8_t *trusted = field->trusted ? QC__NEW(run->ctx, uint8_t, F) : NULL;
     qc_face_field *out = NULL;
-    qc_status status = smooth_field(run->ctx, field, run->input(run, "sizing"), p, x);
-    if (!status)
-        status = qc_face_field_create(run->ctx, mesh, x, field->weight, field->trusted, &out);
+    qc_status status = x && (trusted || !field->trusted) ? QC_OK : QC_ERR_NOMEM;
+    if (!status && trusted) memcpy(trusted, field->trusted, F);
+    if (!status) status = smooth_field(run->ctx, field, run->input(run, "sizing"), p, trusted, x);
+    if (!status) status = qc_face_field_create(run->ctx, mesh, x, field->weight, trusted, &out);
     qc__free(x);
+    qc__free(trusted);
     return status ? status : run->output(run, "field", out);
 }
 
 static const qc_port inputs[] = {
     {"field", QC_TYPE_FACE_FIELD, 0, "cross field with stability weights and trusted faces"},
     {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL,
-     "length of a quad, the unit of `detail`; without, that of 10000 quads"},
+     "length of a quad, the unit of `detail` and `separate`; without, that of 10000 quads"},
 };
 static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothed field"}};
 static const qc_param table[] = {
@@ -56,6 +61,9 @@ static const qc_param table[] = {
     QC_PARAM_REAL(params, detail, 0.5, 0, 100, "quad",
                   "with relax: pairs of singularities nearer than about this many edge lengths of the "
                   "quads are closed; 0 = leave them"),
+    QC_PARAM_REAL(params, separate, 0.7, 0, 100, "quad",
+                  "faces about opposite singularities nearer than this many edge lengths of the quads, or "
+                  "about an index above 1/4 or below -2/4, are solved again without alignment; 0 = off"),
     QC_PARAM_INT(params, rounds, 20, 0, 1000, "",
                  "at most so many times: solve, rotate, match again; ends when the matching stays"),
     QC_PARAM_BOOL(params, relax, true,
@@ -78,7 +86,7 @@ const qc_stage qc_stage_field_smooth = {
     2,
     1,
     table,
-    4,
+    5,
     sizeof(params),
     smooth,
 };

@@ -80,6 +80,14 @@ QC_API qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const doub
                                     const uint8_t *trusted, double alignment, double detail,
                                     qc_complex *x);
 
+/* Solves again without alignment around crowded vertices: those of index4 >= 2 or <= -3, and opposite
+ * singularities nearer than `distance` (units of the mesh; 0 = none) or, within twice that, on one edge.
+ * Region by region a result is kept when it is less crowded; its faces lose their flag in trusted (n_faces,
+ * in and out, may be NULL). Vertices whose index stays are named by a warning; *left (may be NULL) counts
+ * them. x in place. Errors: ARGUMENT, NOMEM, CANCELLED. */
+QC_API qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
+                                   uint8_t *trusted, qc_complex *x, int32_t *left);
+
 /* Matching and indices of a cross field (DESIGN 3). */
 typedef struct qc_matching {
     qc_object object;
