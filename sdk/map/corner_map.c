@@ -12,6 +12,7 @@ static void corner_map_destroy(qc_object *object) {
     qc__free((void *)(uintptr_t)map->uv);
     qc__free((void *)(uintptr_t)map->cross);
     qc__free((void *)(uintptr_t)map->rotation);
+    qc__free((void *)(uintptr_t)map->relaxed);
     qc__free(map);
 }
 
@@ -63,5 +64,15 @@ qc_status qc_corner_map_set_rotation(qc_ctx *ctx, qc_corner_map *map, const int8
     memcpy(copy, rotation, sizeof *copy * (size_t)map->mesh->n_edges);
     qc__free((void *)(uintptr_t)map->rotation);
     map->rotation = copy;
+    return QC_OK;
+}
+
+qc_status qc_corner_map_set_relaxed(qc_ctx *ctx, qc_corner_map *map, const double *uv) {
+    const size_t n = 6 * (size_t)map->mesh->n_faces;
+    double *copy = QC__NEW(ctx, double, n);
+    if (!copy) return QC_ERR_NOMEM;
+    memcpy(copy, uv, n * sizeof *copy);
+    qc__free((void *)(uintptr_t)map->relaxed);
+    map->relaxed = copy;
     return QC_OK;
 }

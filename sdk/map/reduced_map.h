@@ -1,5 +1,5 @@
-/* An integer-seamless map by its independent values: one complex number F_v a vertex, all corners following
- * by the transitions, f_c = i^{turn_c} F_v + offset_c with Gaussian integer offsets. Internal to sdk/map. */
+/* A seamless map by its independent values: one complex number F_v a vertex, all corners following by the
+ * transitions, f_c = i^{turn_c} F_v + offset_c. Internal to sdk/map. */
 #ifndef QC_MAP_REDUCED_MAP_H
 #define QC_MAP_REDUCED_MAP_H
 
@@ -14,7 +14,11 @@ typedef struct qc__reduced_map {
     qc_complex *offset; /* 3 n_faces */
 } qc__reduced_map;
 
-qc_status qc__reduced_map_create(qc_ctx *ctx, const qc_grid_map *grid, qc__reduced_map **out);
+/* From corner values (6 n_faces) with known rotations; translations are measured, and rounded to integers when
+ * `integer`. pinned: where holonomy (n_vertices) is not 0. */
+qc_status qc__reduced_map_create(qc_ctx *ctx, const qc_mesh *mesh, const double *uv,
+                                 const int8_t *rotation, const int8_t *holonomy, bool integer,
+                                 qc__reduced_map **out);
 void qc__reduced_map_free(qc__reduced_map *map);
 
 static inline qc_complex qc__reduced_map_corner(const qc__reduced_map *m, qc_complex value,

@@ -269,6 +269,13 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
         status = qc_corner_map_create(r->ctx, r->mesh, &r->best[0].re,
                                       seamless->sizing->edge_length / r->best_scale, cross, &map);
     if (status == QC_OK) status = qc_corner_map_set_rotation(r->ctx, map, rotation);
+    if (status == QC_OK) {
+        for (int64_t c = 0; c < 3 * (int64_t)n_faces; c++) {
+            r->trial[c].re = r->best_scale * r->f[c].re;
+            r->trial[c].im = r->best_scale * r->f[c].im;
+        }
+        status = qc_corner_map_set_relaxed(r->ctx, map, &r->trial[0].re);
+    }
     qc__free(rotation);
     qc__free(cross);
     if (status != QC_OK) {

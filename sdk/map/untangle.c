@@ -1,7 +1,8 @@
 /* Untangling: moves parameters near fold-overs until every face is positively oriented (ROBUST 6).
  *
  * Only a neighbourhood of the fold-overs moves, so that the rest of the map keeps its alignment; it grows
- * when it proves too small. Transitions and cones are kept by construction (reduced_map.h). */
+ * when it proves too small. Transitions and cones are kept by construction (reduced_map.h). Where the map
+ * before rounding is known, the way starts there. */
 #include "sdk/map/lbfgs.h"
 #include "sdk/map/untangle_cones.h"
 #include "sdk/map/untangle_energy.h"
@@ -9,6 +10,10 @@
 #include <string.h>
 
 static const double good_det = 1e-4;                    /* faces below it count as folded           */
+enum {
+    STEPS = 8,  /* of the continuation from the relaxed map                                         */
+    GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings                                     */
+};
 static const double star_scale = 0.3;                   /* of a star laid out anew                  */
 
 typedef struct untangler {
@@ -16,7 +21,8 @@ typedef struct untangler {
     const qc_mesh *mesh;
     qc_untangle_options options;
     const int8_t *rotation; /* of the transitions, known from the first grid                        */
-    qc__reduced_map *map;
+    qc__reduced_map *map;    /* moves */
+    qc__reduced_map *target; /* the rounded map                                                      */
     qc__guide guide; /* cross NULL: the map does not tell                                          */
     qc_complex *edge;
     qc_complex *hat;
@@ -274,7 +280,11 @@ static qc_status make_guide(untangler *u, const qc_corner_map *map) {
 
 static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_map *grid) {
     u->rotation = grid->rotation;
-    qc_status status = qc__reduced_map_create(u->ctx, grid, &u->map);
+    qc_status status = qc__reduced_map_create(u->ctx, map->mesh, map->uv, u->rotation,
+                                              grid->holonomy, true, &u->target);
+    if (status == QC_OK)
+        status = qc__reduced_map_create(u->ctx, map->mesh, map->uv, u->rotation, grid->holonomy,
+                                        true, &u->map);
     if (status == QC_OK) status = allocate(u);
     if (status == QC_OK)
         status = qc__untangle_targets(u->ctx, map->mesh, unit_length(map), u->hat, u->area);
@@ -284,6 +294,7 @@ static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_m
 
 static void release(untangler *u) {
     qc__reduced_map_free(u->map);
+    qc__reduced_map_free(u->target);
     void *const blocks[] = {u->hat,    u->edge, u->area,       u->distance, u->queue, u->local,
                             u->vertex, u->face, u->face_stamp, u->frozen,   u->active, u->x,
                             u->saved};
@@ -307,10 +318,58 @@ static qc_status exact_result(untangler *u, const qc_corner_map *map, const qc_g
     return status;
 }
 
+/* Until no bad place is left, with growing neighbourhoods. */
+static qc_status untangle_growing(untangler *u, int32_t growths, double lo, double hi, int32_t *bad) {
+    qc_status status = QC_OK;
+    *bad = 1;
+    for (int32_t i = 0, rings = 3; i < growths && status == QC_OK && *bad > 0; i++, rings *= 2) {
+        const double width = (hi - lo) / growths;
+        const qc__range outer = qc__range_begin(u->ctx, NULL, lo + i * width, lo + (i + 1) * width);
+        status = untangle_rings(u, rings, bad);
+        qc__range_end(u->ctx, outer);
+    }
+    return status;
+}
+
+/* Puts the working map at `step` of STEPS between the relaxed and the rounded one: transitions and cones exactly,
+ * other vertices by adding the difference of the step to where they are. */
+static void advance(untangler *u, const qc__reduced_map *relaxed, int32_t step) {
+    const qc__reduced_map *end = u->target;
+    const double s = (double)step / STEPS, d = step == 0 ? 0.0 : 1.0 / STEPS;
+    for (int64_t c = 0; c < 3 * (int64_t)u->mesh->n_faces; c++) {
+        const qc_complex a = relaxed->offset[c], b = end->offset[c];
+        u->map->offset[c] = step == STEPS ? b
+                                          : (qc_complex){a.re + s * (b.re - a.re),
+                                                         a.im + s * (b.im - a.im)};
+    }
+    for (int32_t v = 0; v < u->mesh->n_vertices; v++) {
+        const qc_complex a = relaxed->value[v], b = end->value[v];
+        const bool fixed = u->map->pinned[v] || step == 0;
+        const qc_complex from = fixed ? a : u->map->value[v];
+        const double by = fixed ? s : d;
+        u->map->value[v] =
+            (qc_complex){from.re + by * (b.re - a.re), from.im + by * (b.im - a.im)};
+        if (step == STEPS && u->map->pinned[v]) u->map->value[v] = b;
+    }
+}
+
+/* Continuation: the relaxed map rarely folds; on the way to the rounded one each step folds little, so the cones
+ * keep their winding. */
+static qc_status continue_from(untangler *u, const qc_corner_map *map, const qc_grid_map *grid) {
+    qc__reduced_map *relaxed = NULL;
+    qc_status status = qc__reduced_map_create(u->ctx, map->mesh, map->relaxed, u->rotation,
+                                              grid->holonomy, false, &relaxed);
+    for (int32_t step = 0; step <= STEPS && status == QC_OK; step++) {
+        int32_t bad = 0;
+        advance(u, relaxed, step);
+        status = untangle_growing(u, 3, 0.8 * step / (STEPS + 1), 0.8 * (step + 1) / (STEPS + 1), &bad);
+    }
+    qc__reduced_map_free(relaxed);
+    return status;
+}
+
 qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map, const qc_untangle_options *options,
                           qc_corner_map **out) {
-    static const int32_t rings[] = {3, 6, 12, 24, 48};
-    enum { GROWTHS = sizeof rings / sizeof *rings };
     untangler u = {.ctx = ctx, .mesh = map->mesh};
     u.options = (qc_untangle_options)QC_UNTANGLE_OPTIONS_INIT;
     if (options)
@@ -320,13 +379,10 @@ qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map, const qc_untang
     qc_status status = qc_grid_map_create(ctx, map, 0, &before);
     if (status != QC_OK) return status;
     status = prepare(&u, map, before);
-    int32_t bad = 1;
-    for (int32_t i = 0; i < GROWTHS && status == QC_OK && bad > 0; i++) {
-        const qc__range outer =
-            qc__range_begin(ctx, NULL, (double)i / GROWTHS, (i + 1.0) / GROWTHS);
-        status = untangle_rings(&u, rings[i], &bad);
-        qc__range_end(ctx, outer);
-    }
+    int32_t bad = 0;
+    if (status == QC_OK) bad = mark_neighbourhood(&u, 0);
+    if (status == QC_OK && bad > 0 && map->relaxed) status = continue_from(&u, map, before);
+    if (status == QC_OK && bad > 0) status = untangle_growing(&u, GROWTHS, 0.8, 1.0, &bad);
     if (status == QC_OK) status = exact_result(&u, map, before, out);
     qc_object_release(before);
     release(&u);

@@ -44,6 +44,8 @@ typedef struct qc_corner_map {
     const qc_complex *cross; /* optional, n_faces: directions the map was to follow (tangent frame),
                                 in the gauge of the map: grad u ~ cross / edge_length                  */
     const int8_t *rotation;  /* optional, n_edges: r of f_t = i^r f_s + tau where it is known         */
+    const double *relaxed;   /* optional, 6 n_faces: the map before rounding, in the same charts: where
+                                untangling starts from                                               */
     double field_energy, curl_energy;                 /* as in qc_seamless_map; 0 = unknown           */
     double harmonic_energy, harmonic_energy_direct;   /* E_H reached, and by direct rounding          */
     int64_t iterations, evaluations;                  /* of the rounding search                      */
@@ -56,6 +58,8 @@ QC_API qc_status qc_corner_map_create(qc_ctx *ctx, const qc_mesh *mesh, const do
  * do not tell them. */
 QC_API qc_status qc_corner_map_set_rotation(qc_ctx *ctx, qc_corner_map *map,
                                             const int8_t *rotation);
+/* Attaches the map before rounding (6 n_faces, copied) to a map which is not yet shared. */
+QC_API qc_status qc_corner_map_set_relaxed(qc_ctx *ctx, qc_corner_map *map, const double *uv);
 /* The map as a polygon mesh with one vt per corner, and back: faces of `soup` must be triangles with uvs. */
 QC_API qc_status qc_corner_map_to_polygons(qc_ctx *ctx, const qc_corner_map *map,
                                            qc_polygon_mesh **out);
