@@ -21,7 +21,7 @@ typedef struct rounding {
     const qc_seamless_map *seamless;
     const qc_mesh *mesh;
     qc_round_options options;
-    double *cotangent;
+    double *cotangent; /* times the weights of the faces                                             */
     qc__seams *seams;
     qc__periods *periods;
     qc__separation *separation;
@@ -113,7 +113,8 @@ static double dirichlet_energy(const rounding *r, const qc_complex *f) {
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
         const qc_complex a = f[qc_next((int32_t)c)], b = f[qc_prev((int32_t)c)];
         const double du = b.re - a.re, dv = b.im - a.im;
-        energy += 0.25 * r->cotangent[c] * (du * du + dv * dv);
+        const double weight = r->seamless->weight ? r->seamless->weight[c / 3] : 1.0;
+        energy += 0.25 * r->cotangent[c] / weight * (du * du + dv * dv);
     }
     return energy;
 }
@@ -155,7 +156,8 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
         if (status == QC_OK) status = qc__periods_add_map(r->ctx, r->periods, r->gap, r->trial);
     }
     if (status != QC_OK) return status;
-    if (!r->P) result.energy = result.energy_direct = dirichlet_energy(r, r->trial);
+    if (!r->P || r->seamless->weight) result.energy = dirichlet_energy(r, r->trial);
+    if (!r->P) result.energy_direct = result.energy;
     for (int64_t c = 0; c < n_corners; c++) {
         r->trial[c].re += scale * r->f[c].re;
         r->trial[c].im += scale * r->f[c].im;
@@ -211,6 +213,8 @@ static qc_status prepare(rounding *r) {
     memcpy(r->f, seamless->f, sizeof *r->f * (size_t)n_corners);
     qc_status status =
         qc_mesh_geometry(r->ctx, r->mesh, NULL, NULL, r->cotangent, NULL, NULL, NULL);
+    for (int64_t c = 0; c < n_corners && status == QC_OK && seamless->weight; c++)
+        r->cotangent[c] *= seamless->weight[c / 3];
     if (status == QC_OK)
         status = qc__seams_create(r->ctx, &cover, seamless->cut, seamless->face_turn,
                                   seamless->matching->index4, &r->seams);

@@ -12,6 +12,7 @@ static void seamless_map_destroy(qc_object *object) {
     qc__free((void *)(uintptr_t)map->cut);
     qc__free((void *)(uintptr_t)map->face_turn);
     qc__free((void *)(uintptr_t)map->f);
+    qc__free((void *)(uintptr_t)map->weight);
     qc__free(map);
 }
 
@@ -49,58 +50,137 @@ static qc_status cut_at_cones(qc_ctx *ctx, const qc_matching *matching, const qc
     return status;
 }
 
+/* What the rounds of stiffening share. */
+typedef struct hodge {
+    qc_ctx *ctx;
+    const qc_mesh *mesh;
+    qc_cover cover;
+    double *cotangent;   /* 3 n_faces */
+    double *compliance;  /* 3 n_faces: cotangents over the weights                                   */
+    double *weight;      /* n_faces */
+    qc_complex *frame;   /* 3 n_faces: the given field                                               */
+    qc_complex *z, *f;   /* 3 n_faces */
+    uint8_t *cut;        /* n_edges */
+    int8_t *face_turn;   /* n_faces */
+} hodge;
+
+/* The closest integrable field in the weighted norm sum w |Z^ - Z|^2: the multiplier of curl* = 0 solves L* with
+ * cotangents over w. */
+static qc_status project(hodge *q) {
+    const int64_t n_corners = 3 * (int64_t)q->mesh->n_faces;
+    for (int64_t c = 0; c < n_corners; c++) q->compliance[c] = q->cotangent[c] / q->weight[c / 3];
+    qc_status status = qc_hodge_remove_curl(q->ctx, &q->cover, q->compliance, q->frame, q->z, NULL,
+                                            NULL);
+    double residual = 0;
+    if (status == QC_OK)
+        status = qc_form_integrate(q->ctx, &q->cover, q->cut, q->face_turn, q->z, q->f, &residual);
+    if (status == QC_OK && !(residual <= 1e-6))
+        status = qc__fail(q->ctx, QC_ERR_FAILED, -1,
+                          "the field is not integrable (mismatch %g); the mesh may have faces of "
+                          "almost no area",
+                          residual);
+    return status;
+}
+
+/* Raises the weight of folded faces, and of those around them half as much (stiffening as in mixed-integer
+ * quadrangulation, Bommes, Zimmer, Kobbelt 2009, 5.4). Returns the number of folded faces. */
+static int32_t stiffen(hodge *q) {
+    int32_t folded = 0;
+    for (int32_t t = 0; t < q->mesh->n_faces; t++) {
+        const qc_complex *p = q->f + 3 * (int64_t)t;
+        const double det = (p[1].re - p[0].re) * (p[2].im - p[0].im) -
+                           (p[2].re - p[0].re) * (p[1].im - p[0].im);
+        if (det > 0) continue;
+        folded++;
+        q->weight[t] *= 4;
+    }
+    for (int32_t h = 0; h < 3 * q->mesh->n_faces; h++) {
+        const int32_t g = q->mesh->twin[h];
+        if (g >= 0 && q->weight[h / 3] < 0.5 * q->weight[g / 3])
+            q->weight[h / 3] = 0.5 * q->weight[g / 3];
+    }
+    return folded;
+}
+
+/* Energy of the difference of two forms. */
+static double half_distance2(const hodge *q, const qc_complex *a, const qc_complex *b) {
+    double sum = 0;
+    for (int64_t c = 0; c < 3 * (int64_t)q->mesh->n_faces; c++) {
+        const double re = a[c].re - b[c].re, im = a[c].im - b[c].im;
+        sum += 0.25 * q->cotangent[c] * (re * re + im * im);
+    }
+    return sum;
+}
+
+static qc_status solve(hodge *q, const qc_matching *matching, const qc_sizing *sizing,
+                       int32_t rounds) {
+    qc_status status =
+        qc_mesh_geometry(q->ctx, q->mesh, NULL, NULL, q->cotangent, NULL, NULL, NULL);
+    if (status == QC_OK) status = scaled_form(q->ctx, matching, sizing, q->frame);
+    if (status == QC_OK) status = cut_at_cones(q->ctx, matching, &q->cover, q->cut);
+    if (status == QC_OK)
+        status = qc_cover_comb(q->ctx, &q->cover, q->cut, q->face_turn, NULL, NULL);
+    for (int32_t t = 0; t < q->mesh->n_faces; t++) q->weight[t] = 1;
+    for (int32_t i = 0; i <= rounds && status == QC_OK; i++) {
+        if (i > 0 && stiffen(q) == 0) break;
+        const qc__range outer =
+            qc__range_begin(q->ctx, NULL, i / (rounds + 1.0), (i + 1) / (rounds + 1.0));
+        status = project(q);
+        qc__range_end(q->ctx, outer);
+    }
+    return status;
+}
+
+static qc_status allocate(hodge *q) {
+    const int64_t n_corners = 3 * (int64_t)q->mesh->n_faces;
+    q->cotangent = QC__NEW(q->ctx, double, n_corners);
+    q->compliance = QC__NEW(q->ctx, double, n_corners);
+    q->weight = QC__NEW(q->ctx, double, q->mesh->n_faces);
+    q->frame = QC__NEW(q->ctx, qc_complex, n_corners);
+    q->z = QC__NEW(q->ctx, qc_complex, n_corners);
+    q->f = QC__NEW(q->ctx, qc_complex, n_corners);
+    q->cut = QC__NEW(q->ctx, uint8_t, q->mesh->n_edges);
+    q->face_turn = QC__NEW(q->ctx, int8_t, q->mesh->n_faces);
+    return q->cotangent && q->compliance && q->weight && q->frame && q->z && q->f && q->cut &&
+                   q->face_turn
+               ? QC_OK
+               : QC_ERR_NOMEM;
+}
+
 qc_status qc_seamless_map_create(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
-                                 qc_seamless_map **out) {
+                                 const qc_hodge_options *options, qc_seamless_map **out) {
     const qc_mesh *mesh = matching->field->mesh;
     if (sizing->mesh != mesh)
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "field and sizing belong to different meshes");
-    const qc_cover cover = {mesh, matching->m};
-    const int64_t n_corners = 3 * (int64_t)mesh->n_faces;
-    double *cotangent = QC__NEW(ctx, double, n_corners);
-    qc_complex *z = QC__NEW(ctx, qc_complex, n_corners), *f = QC__NEW(ctx, qc_complex, n_corners);
-    uint8_t *cut = QC__NEW(ctx, uint8_t, mesh->n_edges);
-    int8_t *face_turn = QC__NEW(ctx, int8_t, mesh->n_faces);
+    qc_hodge_options o = QC_HODGE_OPTIONS_INIT;
+    if (options)
+        memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
+    hodge q = {.ctx = ctx, .mesh = mesh, .cover = {mesh, matching->m}};
     qc_seamless_map *map = QC__ZERO(ctx, qc_seamless_map, 1);
-    qc_status status = cotangent && z && f && cut && face_turn && map ? QC_OK : QC_ERR_NOMEM;
-    double field_energy = 0, curl_energy = 0;
-    if (status == QC_OK)
-        status = qc_mesh_geometry(ctx, mesh, NULL, NULL, cotangent, NULL, NULL, NULL);
-    if (status == QC_OK) status = scaled_form(ctx, matching, sizing, z);
+    qc_status status = allocate(&q);
+    if (!map) status = QC_ERR_NOMEM;
+    if (status == QC_OK) status = solve(&q, matching, sizing, o.stiffening);
     if (status == QC_OK) {
-        field_energy = 0.5 * qc_form_product(mesh, cotangent, z, z).re;
-        qc__range outer = qc__range_begin(ctx, NULL, 0.0, 0.7);
-        status = qc_hodge_remove_curl(ctx, &cover, cotangent, z, z, NULL, &curl_energy);
-        qc__range_end(ctx, outer);
+        qc_object_init(&map->object, QC_TYPE_SEAMLESS_MAP, seamless_map_destroy);
+        map->matching = qc_object_retain(matching);
+        map->sizing = qc_object_retain(sizing);
+        map->field_energy = 0.5 * qc_form_product(mesh, q.cotangent, q.frame, q.frame).re;
+        map->curl_energy = half_distance2(&q, q.z, q.frame);
+        map->z = q.z;
+        map->cut = q.cut;
+        map->face_turn = q.face_turn;
+        map->f = q.f;
+        bool stiff = false;
+        for (int32_t t = 0; t < mesh->n_faces; t++) stiff |= q.weight[t] > 1;
+        if (!stiff) qc__free(q.weight);
+        map->weight = stiff ? q.weight : NULL;
+        *out = map;
+    } else {
+        void *const blocks[] = {q.weight, q.z, q.f, q.cut, q.face_turn, map};
+        for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     }
-    if (status == QC_OK) status = cut_at_cones(ctx, matching, &cover, cut);
-    if (status == QC_OK) status = qc_cover_comb(ctx, &cover, cut, face_turn, NULL, NULL);
-    if (status == QC_OK) {
-        double residual = 0;
-        status = qc_form_integrate(ctx, &cover, cut, face_turn, z, f, &residual);
-        if (status == QC_OK && !(residual <= 1e-6))
-            status = qc__fail(ctx, QC_ERR_FAILED, -1,
-                              "the field is not integrable (mismatch %g); the mesh may have faces of "
-                              "almost no area",
-                              residual);
-    }
-    qc__free(cotangent);
-    if (status != QC_OK) {
-        qc__free(z);
-        qc__free(f);
-        qc__free(cut);
-        qc__free(face_turn);
-        qc__free(map);
-        return status;
-    }
-    qc_object_init(&map->object, QC_TYPE_SEAMLESS_MAP, seamless_map_destroy);
-    map->matching = qc_object_retain(matching);
-    map->sizing = qc_object_retain(sizing);
-    map->z = z;
-    map->cut = cut;
-    map->face_turn = face_turn;
-    map->f = f;
-    map->field_energy = field_energy;
-    map->curl_energy = curl_energy;
-    *out = map;
-    return QC_OK;
+    qc__free(q.cotangent);
+    qc__free(q.compliance);
+    qc__free(q.frame);
+    return status;
 }

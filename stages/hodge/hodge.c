@@ -10,11 +10,22 @@ static const qc_port out[] = {
     {"map", QC_TYPE_SEAMLESS_MAP, 0, "locally integrable field and its integral on the cut surface"},
 };
 
-static qc_status run(const qc_run *r, const void *params) {
-    (void)params;
+typedef struct params {
+    int64_t stiffening;
+} params;
+
+static const qc_param table[] = {
+    QC_PARAM_INT(params, stiffening, 0, 0, 50, "",
+                 "rounds which raise the weight of folded faces and solve again"),
+};
+
+static qc_status run(const qc_run *r, const void *raw) {
+    const params *p = raw;
+    qc_hodge_options options = QC_HODGE_OPTIONS_INIT;
+    options.stiffening = (int32_t)p->stiffening;
     qc_seamless_map *map = NULL;
     const qc_status status =
-        qc_seamless_map_create(r->ctx, r->input(r, "matching"), r->input(r, "sizing"), &map);
+        qc_seamless_map_create(r->ctx, r->input(r, "matching"), r->input(r, "sizing"), &options, &map);
     return status == QC_OK ? r->output(r, "map", map) : status;
 }
 
@@ -33,5 +44,8 @@ const qc_stage qc_stage_hodge = {
     .out = out,
     .n_in = 2,
     .n_out = 1,
+    .params = table,
+    .n_params = sizeof table / sizeof *table,
+    .params_size = sizeof(params),
     .run = run,
 };

@@ -24,16 +24,23 @@ typedef struct qc_seamless_map {
     const uint8_t *cut;          /* n_edges: 1 on the cut graph                                     */
     const int8_t *face_turn;     /* n_faces: combing (qc_cover_comb) of the cut surface              */
     const qc_complex *f;         /* 3 n_faces: integral, combed gauge                                */
+    const double *weight;        /* optional, n_faces: stiffness of the faces, >= 1                  */
     double field_energy;         /* 1/2 int |X|^2 + |Y|^2 of the frame field with density            */
     double curl_energy;          /* E_D                                                             */
 } qc_seamless_map;
 
+typedef struct qc_hodge_options {
+    uint32_t struct_size;
+    int32_t stiffening; /* rounds which raise the weight of folded faces and solve again; 0 = none    */
+} qc_hodge_options;
+#define QC_HODGE_OPTIONS_INIT { sizeof(qc_hodge_options), 0 }
 /* The Hodge step (thesis 4.1): scales the cross field by 1/length, removes its curl with the complex matrix L*,
  * cuts the surface by the shortest cut graph based at the singularities and integrates. Errors: NOMEM,
  * CANCELLED, ARGUMENT (matching and sizing of different meshes), FAILED (where = face: the factorisation or the
  * integration broke down). */
 QC_API qc_status qc_seamless_map_create(qc_ctx *ctx, const qc_matching *matching,
-                                        const qc_sizing *sizing, qc_seamless_map **out);
+                                        const qc_sizing *sizing,
+                                        const qc_hodge_options *options, qc_seamless_map **out);
 
 /* Parameters at corners; after rounding an integer-seamless map. */
 typedef struct qc_corner_map {
