@@ -1,6 +1,7 @@
 /* The Hodge step: from a matched cross field to a locally integrable field and its integral on the cut
  * surface (thesis 4.1; 2007 paper, section 4, eq. (9)). */
 #include "sdk/base/internal.h"
+#include <math.h>
 #include <qc/map.h>
 #include <string.h>
 
@@ -54,6 +55,7 @@ static qc_status cut_at_cones(qc_ctx *ctx, const qc_matching *matching, const qc
 typedef struct hodge {
     qc_ctx *ctx;
     const qc_mesh *mesh;
+    const int32_t *index4; /* n_vertices */
     qc_cover cover;
     double *cotangent;   /* 3 n_faces */
     double *compliance;  /* 3 n_faces: cotangents over the weights                                   */
@@ -82,24 +84,41 @@ static qc_status project(hodge *q) {
     return status;
 }
 
+/* Cones whose image angle is not 4 - index4 quarter turns: fold-overs which untangling cannot undo. */
+static int32_t count_wrong_cones(const hodge *q) {
+    const qc_mesh *mesh = q->mesh;
+    const double quarter = 1.57079632679489661923;
+    int32_t wrong = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        if (q->index4[v] == 0) continue;
+        const int32_t start = mesh->vertex_corner[v];
+        double angle = 0;
+        int32_t c = start;
+        do {
+            const qc_complex p = q->f[c], a = q->f[qc_next(c)], b = q->f[qc_prev(c)];
+            const double ax = a.re - p.re, ay = a.im - p.im, bx = b.re - p.re, by = b.im - p.im;
+            angle += atan2(ax * by - ay * bx, ax * bx + ay * by);
+            c = qc_corner_ccw(mesh, c);
+        } while (c >= 0 && c != start);
+        wrong += lround(angle / quarter) != 4 - q->index4[v];
+    }
+    return wrong;
+}
+
 /* Raises the weight of folded faces, and of those around them half as much (stiffening as in mixed-integer
- * quadrangulation, Bommes, Zimmer, Kobbelt 2009, 5.4). Returns the number of folded faces. */
-static int32_t stiffen(hodge *q) {
-    int32_t folded = 0;
+ * quadrangulation, Bommes, Zimmer, Kobbelt 2009, 5.4). */
+static void stiffen(hodge *q) {
     for (int32_t t = 0; t < q->mesh->n_faces; t++) {
         const qc_complex *p = q->f + 3 * (int64_t)t;
         const double det = (p[1].re - p[0].re) * (p[2].im - p[0].im) -
                            (p[2].re - p[0].re) * (p[1].im - p[0].im);
-        if (det > 0) continue;
-        folded++;
-        q->weight[t] *= 4;
+        if (det <= 0) q->weight[t] *= 4;
     }
     for (int32_t h = 0; h < 3 * q->mesh->n_faces; h++) {
         const int32_t g = q->mesh->twin[h];
         if (g >= 0 && q->weight[h / 3] < 0.5 * q->weight[g / 3])
             q->weight[h / 3] = 0.5 * q->weight[g / 3];
     }
-    return folded;
 }
 
 /* Energy of the difference of two forms. */
@@ -122,7 +141,10 @@ static qc_status solve(hodge *q, const qc_matching *matching, const qc_sizing *s
         status = qc_cover_comb(q->ctx, &q->cover, q->cut, q->face_turn, NULL, NULL);
     for (int32_t t = 0; t < q->mesh->n_faces; t++) q->weight[t] = 1;
     for (int32_t i = 0; i <= rounds && status == QC_OK; i++) {
-        if (i > 0 && stiffen(q) == 0) break;
+        if (i > 0) {
+            if (count_wrong_cones(q) == 0) break;
+            stiffen(q);
+        }
         const qc__range outer =
             qc__range_begin(q->ctx, NULL, i / (rounds + 1.0), (i + 1) / (rounds + 1.0));
         status = project(q);
@@ -155,7 +177,7 @@ qc_status qc_seamless_map_create(qc_ctx *ctx, const qc_matching *matching, const
     qc_hodge_options o = QC_HODGE_OPTIONS_INIT;
     if (options)
         memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
-    hodge q = {.ctx = ctx, .mesh = mesh, .cover = {mesh, matching->m}};
+    hodge q = {.ctx = ctx, .mesh = mesh, .index4 = matching->index4, .cover = {mesh, matching->m}};
     qc_seamless_map *map = QC__ZERO(ctx, qc_seamless_map, 1);
     qc_status status = allocate(&q);
     if (!map) status = QC_ERR_NOMEM;

@@ -15,8 +15,9 @@ typedef struct params {
 } params;
 
 static const qc_param table[] = {
-    QC_PARAM_INT(params, stiffening, 0, 0, 50, "",
-                 "rounds which raise the weight of folded faces and solve again"),
+    QC_PARAM_INT(params, stiffening, 12, 0, 50, "",
+                 "rounds, at most, which raise the weight of folded faces and solve again while a "
+                 "cone winds the wrong number of times"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
