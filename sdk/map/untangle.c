@@ -140,22 +140,35 @@ static void freeze_star(untangler *u, int32_t v, uint8_t value) {
     } while (c >= 0 && c != start);
 }
 
-/* Wrong cones on the faces of the patch; with lay_out their stars are laid out anew and frozen. */
-static int32_t wrong_cones(untangler *u, bool lay_out) {
-    int32_t wrong = 0;
+/* Lays out anew and freezes the stars of wrong cones on the faces of the patch; returns whether there are. */
+static bool lay_out_wrong_cones(untangler *u) {
+    bool any = false;
     for (int32_t i = 0; i < 3 * u->n_patch_faces; i++) {
         const int32_t v = u->mesh->face_vertex[3 * (int64_t)u->face[i / 3] + i % 3];
         if (!u->map->pinned[v] || !winds_wrong(u, v)) continue;
-        wrong++;
-        if (!lay_out) return wrong;
+        any = true;
         qc__lay_out_star(&u->guide, v, star_scale);
         freeze_star(u, v, 1);
     }
-    return wrong;
+    return any;
+}
+
+/* Folded faces of the patch, and wrong cones once for each of their faces. */
+static int32_t count_bad(const untangler *u) {
+    int32_t bad = 0;
+    for (int32_t i = 0; i < u->n_patch_faces; i++) {
+        const int32_t t = u->face[i];
+        bad += face_det(u, t) <= 0;
+        for (int32_t k = 0; k < 3; k++) {
+            const int32_t v = u->mesh->face_vertex[3 * (int64_t)t + k];
+            bad += u->map->pinned[v] && winds_wrong(u, v);
+        }
+    }
+    return bad;
 }
 
 /* Lowers the energy over the vertices of the patch which are not frozen. */
-static qc_status minimise(untangler *u, double *min_det) {
+static qc_status minimise(untangler *u) {
     int32_t n = 0;
     for (int32_t j = 0; j < u->n_patch; j++) {
         const int32_t v = u->vertex[j];
@@ -170,7 +183,6 @@ static qc_status minimise(untangler *u, double *min_det) {
     qc__patch patch = {u->map,    u->hat,  u->area,  n,  u->n_patch_faces,
                        u->active, u->face, u->local, 0.0};
     const qc_status status = n > 0 ? qc__patch_minimise(u->ctx, &patch, &u->options, u->x) : QC_OK;
-    if (status == QC_OK) *min_det = qc__patch_min_det(&patch, u->x);
     for (int32_t j = 0; j < n; j++) {
         const int32_t v = u->active[j];
         if (status == QC_OK)
@@ -180,18 +192,19 @@ static qc_status minimise(untangler *u, double *min_det) {
     return status;
 }
 
-/* Untangles the collected patch, or leaves it as it was. */
+/* Untangles the collected patch as far as possible; a patch which does not improve stays as it was. */
 static qc_status untangle_patch(untangler *u) {
+    const int32_t before = count_bad(u);
     for (int32_t j = 0; j < u->n_patch; j++) u->saved[j] = u->map->value[u->vertex[j]];
-    double min_det = -1;
     qc_status status = QC_OK;
-    if (wrong_cones(u, true) > 0) {
-        status = minimise(u, &min_det);
+    if (lay_out_wrong_cones(u)) {
+        status = minimise(u);
         for (int32_t i = 0; i < 3 * u->n_patch_faces; i++)
             u->frozen[u->mesh->face_vertex[3 * (int64_t)u->face[i / 3] + i % 3]] = 0;
     }
-    if (status == QC_OK) status = minimise(u, &min_det);
-    if (status == QC_OK && (!(min_det > 0) || wrong_cones(u, false) > 0))
+    if (status == QC_OK) status = minimise(u);
+    const int32_t after = status == QC_OK ? count_bad(u) : before;
+    if (after >= before && after > 0)
         for (int32_t j = 0; j < u->n_patch; j++) u->map->value[u->vertex[j]] = u->saved[j];
     return status;
 }
