@@ -13,7 +13,8 @@ typedef double _Complex qc__cplx;
 static inline qc__cplx qc__c(qc_complex a) { return a.re + a.im * I; }
 static inline qc_complex qc__z(qc__cplx a) { return (qc_complex){creal(a), cimag(a)}; }
 static inline qc__cplx qc__unit(qc__cplx a) {
-    double r = hypot(creal(a), cimag(a));
+    double square = creal(a) * creal(a) + cimag(a) * cimag(a), r = sqrt(square);
+    if (!(square > 1e-280 && square < 1e280)) r = hypot(creal(a), cimag(a));
     return r > 0 ? a / r : 1.0;
 }
 static inline qc__cplx qc__fourth(qc__cplx a) { return (a * a) * (a * a); }

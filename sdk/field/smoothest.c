@@ -10,8 +10,8 @@
 
 #include <string.h>
 
-enum { FLOW_STEPS = 30 };
-#define FLOW_END 1e-4 /* mean change of |z| = 1 in one step */
+enum { FLOW_STEPS = 12 };
+#define FLOW_END 1e-3 /* mean change of |z| = 1 in one step */
 
 /* The smallest shift which the pivot test of the factorisation accepts: flat surfaces have a kernel. */
 static qc_status factorise_shifted(qc_ctx *ctx, qc__power_system *s) {

@@ -42,7 +42,7 @@ QC_API qc_status qc_face_field_create(qc_ctx *ctx, const qc_mesh *mesh, const qc
 enum { QC_CURVATURE_HILDEBRANDT_POLTHIER = 0, QC_CURVATURE_COHEN_STEINER_MORVAN = 1 };
 /* Principal curvature directions (thesis 5.1.1): x = direction of the larger |curvature|; kappa (2 n_faces,
  * may be NULL) = principal curvatures, that along x first. radius: of the averaging disk, in the units of
- * the mesh (Cohen-Steiner and Morvan only); it shrinks where the disk would hold more than 300 faces. */
+ * the mesh (Cohen-Steiner and Morvan only); it shrinks where the disk would hold more than 200 faces. */
 QC_API qc_status qc_field_curvature(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator,
                                     double radius, qc_complex *x, double *kappa);
 /* Stability weights (5.2): |k1 - k2| l exp(-1/2 sum |theta|) with l = sqrt(mesh->area) / 100, the edge of one

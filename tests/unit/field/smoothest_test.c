@@ -161,8 +161,50 @@ static void threads_give_the_same_bits(void **state) {
     free(x[1]);
 }
 
+/* A cap closed by a fan whose faces all follow the rim holds 4/4 at its apex; freed, it is regular inside. */
+static void crowded_indices_are_shared(void **state) {
+    enum { N = 12 };
+    qc_ctx *ctx = *state;
+    double p[3 * (2 * N + 1)] = {0, 0, 1};
+    int32_t f[9 * N];
+    for (int32_t i = 0; i < N; i++) {
+        int32_t a = 1 + i, b = 1 + (i + 1) % N, *t = f + 9 * i;
+        for (int32_t k = 0; k < 2; k++) {
+            double *q = p + 3 * (a + k * N);
+            q[0] = cos(2 * PI * i / N), q[1] = sin(2 * PI * i / N), q[2] = 1 - k;
+        }
+        const int32_t faces[9] = {0, a, b, a, a + N, b, b, a + N, b + N};
+        memcpy(t, faces, sizeof faces);
+    }
+    qc_mesh *mesh = NULL;
+    assert_int_equal(qc_mesh_create(ctx, 2 * N + 1, p, 3 * N, f, &mesh), QC_OK);
+    qc_complex edge[9 * N], x[3 * N];
+    uint8_t trusted[3 * N];
+    memset(trusted, 1, sizeof trusted);
+    assert_int_equal(qc_tangent_edges(ctx, mesh, edge), QC_OK);
+    for (int32_t t = 0; t < 3 * N; t++) { /* along the horizontal edge */
+        int32_t h = 3 * t + (t % 3 == 0 ? 0 : t % 3 == 1 ? 1 : 0);
+        double r = hypot(edge[h].re, edge[h].im);
+        x[t] = (qc_complex){edge[h].re / r, edge[h].im / r};
+    }
+    qc_matching *before = match(ctx, mesh, x);
+    assert_int_equal(before->index4[0], 4);
+    int32_t left = -1;
+    assert_int_equal(qc_field_separate(ctx, mesh, 0.1, trusted, x, &left), QC_OK);
+    assert_int_equal(left, 0);
+    qc_matching *after = match(ctx, mesh, x);
+    assert_int_equal(after->index4[0], 0);
+    assert_int_equal(trusted[0], 0);
+    for (int32_t v = 0; v < mesh->n_vertices; v++) assert_in_range(after->index4[v] + 1, 0, 2);
+    assert_int_equal(qc_field_separate(ctx, mesh, -1, NULL, x, NULL), QC_ERR_ARGUMENT);
+    qc_object_release(before);
+    qc_object_release(after);
+    qc_object_release(mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(crowded_indices_are_shared),
         cmocka_unit_test(few_singularities_on_simple_surfaces),
         cmocka_unit_test(flat_surfaces_get_parallel_fields),
         cmocka_unit_test(components_are_independent),
