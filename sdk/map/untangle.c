@@ -323,6 +323,7 @@ static qc_status exact_result(untangler *u, const qc_corner_map *map, const qc_g
     if (status == QC_OK) status = qc_grid_map_create(u->ctx, moved, 0, &after);
     qc_object_release(moved);
     if (status == QC_ERR_FAILED) {
+        qc__log(u->ctx, QC_LOG_WARNING, "untangling is undone: %s", qc_ctx_error(u->ctx)->text);
         status = QC_OK;
         qc__clear_error(u->ctx);
     }
