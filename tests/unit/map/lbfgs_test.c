@@ -1,4 +1,5 @@
-/* L-BFGS: convex quadratics with and without preconditioner, Rosenbrock's valley, monotone energy. */
+/* L-BFGS: convex quadratics with and without preconditioner, Rosenbrock's valley, monotone energy.
+ */
 #include "tests/unit/map/seamless.h"
 #include "sdk/map/lbfgs.h"
 

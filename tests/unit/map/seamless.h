@@ -1,4 +1,5 @@
-/* Cross fields, covers, seams and seamless maps on the shapes of qc/shape.h, for the tests of rounding. */
+/* Cross fields, covers, seams and seamless maps on the shapes of qc/shape.h, for the tests of
+ * rounding. */
 #ifndef QC_TESTS_SEAMLESS_H
 #define QC_TESTS_SEAMLESS_H
 
@@ -48,10 +49,10 @@ static inline qc_ctx *context(uint32_t threads) {
 
 /* How the crosses and the matching of a case are made. */
 typedef enum field_kind {
-    SMOOTH,      /* the smoothest field: few cones                                               */
-    ROUGH,       /* smoothest, then crosses turned at random by up to 0.6 rad: many cones         */
-    ANY_TURNS,   /* smoothest, with turns -4..4 added on some edges: all kinds of indices        */
-    MERIDIANS    /* along the circles about the z axis: no cone and no holonomy on the torus       */
+    SMOOTH,    /* the smoothest field: few cones                                               */
+    ROUGH,     /* smoothest, then crosses turned at random by up to 0.6 rad: many cones         */
+    ANY_TURNS, /* smoothest, with turns -4..4 added on some edges: all kinds of indices        */
+    MERIDIANS  /* along the circles about the z axis: no cone and no holonomy on the torus       */
 } field_kind;
 
 typedef struct surface_case {
@@ -73,14 +74,17 @@ static inline qc_mesh *case_mesh(qc_ctx *ctx, const surface_case *c) {
 
 /* Crosses along the circles about the z axis. */
 static inline void meridians(qc_ctx *ctx, const qc_mesh *mesh, qc_complex *x) {
-    double *re = ARRAY(double, 3 * (int64_t)mesh->n_faces), *im = ARRAY(double, 3 * (int64_t)mesh->n_faces);
+    double *re = ARRAY(double, 3 * (int64_t)mesh->n_faces),
+           *im = ARRAY(double, 3 * (int64_t)mesh->n_faces);
     must(ctx, qc_tangent_frames(ctx, mesh, re, im));
     for (int32_t t = 0; t < mesh->n_faces; t++) {
         double p[2] = {0, 0};
         for (int k = 0; k < 3; k++)
-            for (int i = 0; i < 2; i++) p[i] += mesh->position[3 * mesh->face_vertex[3 * t + k] + i];
+            for (int i = 0; i < 2; i++)
+                p[i] += mesh->position[3 * mesh->face_vertex[3 * t + k] + i];
         const double d[2] = {-p[1], p[0]};
-        x[t] = (qc_complex){re[3 * t] * d[0] + re[3 * t + 1] * d[1], im[3 * t] * d[0] + im[3 * t + 1] * d[1]};
+        x[t] = (qc_complex){re[3 * t] * d[0] + re[3 * t + 1] * d[1],
+                            im[3 * t] * d[0] + im[3 * t + 1] * d[1]};
     }
     free(re);
     free(im);
@@ -127,7 +131,7 @@ typedef struct setting {
     qc_sizing *sizing;
     qc_seamless_map *map;
     qc_cover cover;
-    double *cotangent;
+    double *cotangent, *stiffness; /* 3 n_faces: plain, and times the weights of the Hodge step */
 } setting;
 
 static inline setting *setting_of(qc_ctx *ctx, qc_mesh *mesh, qc_matching *matching, double quads) {
@@ -136,10 +140,13 @@ static inline setting *setting_of(qc_ctx *ctx, qc_mesh *mesh, qc_matching *match
     s->mesh = mesh;
     s->matching = matching;
     must(ctx, qc_sizing_create(ctx, mesh, sqrt(mesh->area / quads), quads, NULL, &s->sizing));
-    must(ctx, qc_seamless_map_create(ctx, matching, s->sizing, &s->map));
+    must(ctx, qc_seamless_map_create(ctx, matching, s->sizing, NULL, &s->map));
     s->cover = (qc_cover){mesh, matching->m};
     s->cotangent = ARRAY(double, 3 * (int64_t)mesh->n_faces);
+    s->stiffness = ARRAY(double, 3 * (int64_t)mesh->n_faces);
     must(ctx, qc_mesh_geometry(ctx, mesh, NULL, NULL, s->cotangent, NULL, NULL, NULL));
+    for (int32_t c = 0; c < 3 * mesh->n_faces; c++)
+        s->stiffness[c] = s->cotangent[c] * (s->map->weight ? s->map->weight[c / 3] : 1);
     return s;
 }
 static inline setting *setting_create(qc_ctx *ctx, const surface_case *c, double quads) {
@@ -152,6 +159,7 @@ static inline void setting_free(setting *s) {
     qc_object_release(s->matching);
     qc_object_release(s->mesh);
     free(s->cotangent);
+    free(s->stiffness);
     free(s);
 }
 
@@ -172,15 +180,17 @@ static inline complex_t *symbol_values(const qc__seams *s, const complex_t *x) {
     return value;
 }
 
-/* Turns of the combed map across interior edge e from its left to its right face, from the matching alone. */
+/* Turns of the combed map across interior edge e from its left to its right face, from the matching
+ * alone. */
 static inline int32_t combed_turn(const setting *s, int32_t left) {
     const int32_t right = s->mesh->twin[left];
     return (s->map->face_turn[right / 3] - qc_cover_turn(&s->cover, left) -
-            s->map->face_turn[left / 3]) & 3;
+            s->map->face_turn[left / 3]) &
+           3;
 }
 
-/* Largest deviation of corner values f from f_right = i^rho f_left + tau at both ends of every interior edge,
- * with the translation of the segment, and of cones from their position. */
+/* Largest deviation of corner values f from f_right = i^rho f_left + tau at both ends of every
+ * interior edge, with the translation of the segment, and of cones from their position. */
 static inline double seam_deviation(const setting *s, const qc__seams *seams,
                                     const complex_t *symbol, const qc_complex *f) {
     double worst = 0;
@@ -192,7 +202,8 @@ static inline double seam_deviation(const setting *s, const qc__seams *seams,
         const int32_t rho = combed_turn(s, left);
         assert_int_equal(rho, k >= 0 ? seams->segment_turn[k] & 3 : 0);
         const complex_t tau = k >= 0 ? symbol[k] : 0;
-        const int32_t from[2] = {qc_next(left), qc_prev(left)}, to[2] = {qc_prev(right), qc_next(right)};
+        const int32_t from[2] = {qc_next(left), qc_prev(left)},
+                      to[2] = {qc_prev(right), qc_next(right)};
         for (int i = 0; i < 2; i++) {
             const complex_t wanted = qc__turn(qc__complex(f[from[i]]), rho) + tau;
             worst = fmax(worst, cabs(qc__complex(f[to[i]]) - wanted));
@@ -206,13 +217,14 @@ static inline double seam_deviation(const setting *s, const qc__seams *seams,
     return worst;
 }
 
-/* 1/2 int |df - z|^2; z NULL = 0. */
-static inline double energy_of(const setting *s, const qc_complex *f, const qc_complex *z) {
+/* 1/2 int w |df - z|^2 with the cotangents of setting (times w); z NULL = 0. */
+static inline double energy_of(const setting *s, const double *cotangent, const qc_complex *f,
+                               const qc_complex *z) {
     double energy = 0;
     for (int32_t c = 0; c < 3 * s->mesh->n_faces; c++) {
         complex_t d = qc__complex(f[qc_prev(c)]) - qc__complex(f[qc_next(c)]);
         if (z) d -= qc__complex(z[c]);
-        energy += 0.25 * s->cotangent[c] * (creal(d) * creal(d) + cimag(d) * cimag(d));
+        energy += 0.25 * cotangent[c] * (creal(d) * creal(d) + cimag(d) * cimag(d));
     }
     return energy;
 }

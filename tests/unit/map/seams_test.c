@@ -1,20 +1,22 @@
-/* Seams: number of free variables, Gaussian integers, closed walks about vertices, W F + O x is seamless. */
+/* Seams: number of free variables, Gaussian integers, closed walks about vertices, W F + O x is
+ * seamless. */
 #include "tests/unit/map/seamless.h"
 
 static const surface_case CASES[] = {
-    {"sphere", 400, 0, 0, SMOOTH},    {"sphere", 400, 0, 0.05, ROUGH},
-    {"sphere", 300, 0, 0.05, ANY_TURNS}, {"torus", 400, 0, 0, MERIDIANS},
-    {"torus", 400, 0, 0.05, SMOOTH},  {"torus", 400, 0, 0.05, ANY_TURNS},
-    {"flat-torus", 400, 0, 0, SMOOTH}, {"flat-torus", 400, 0, 0, ROUGH},
-    {"genus", 800, 2, 0, SMOOTH},     {"genus", 800, 2, 0.05, ANY_TURNS},
-    {"genus", 1200, 5, 0, ROUGH},     {"trinoid", 600, 0, 0, SMOOTH},
+    {"sphere", 400, 0, 0, SMOOTH},        {"sphere", 400, 0, 0.05, ROUGH},
+    {"sphere", 300, 0, 0.05, ANY_TURNS},  {"torus", 400, 0, 0, MERIDIANS},
+    {"torus", 400, 0, 0.05, SMOOTH},      {"torus", 400, 0, 0.05, ANY_TURNS},
+    {"flat-torus", 400, 0, 0, SMOOTH},    {"flat-torus", 400, 0, 0, ROUGH},
+    {"genus", 800, 2, 0, SMOOTH},         {"genus", 800, 2, 0.05, ANY_TURNS},
+    {"genus", 1200, 5, 0, ROUGH},         {"trinoid", 600, 0, 0, SMOOTH},
     {"trinoid", 600, 0, 0.05, ANY_TURNS}, {"hyperboloid", 400, 0, 0, SMOOTH},
-    {"costa", 700, 0, 0.05, ROUGH}, {"cube", 400, 0, 0, SMOOTH},
-    {"knot", 800, 0, 0.2, SMOOTH},    {"knot", 800, 0, 0.2, ROUGH},
+    {"costa", 700, 0, 0.05, ROUGH},       {"cube", 400, 0, 0, SMOOTH},
+    {"knot", 800, 0, 0.2, SMOOTH},        {"knot", 800, 0, 0.2, ROUGH},
 };
 enum { N_CASES = (int)(sizeof CASES / sizeof *CASES) };
 
-typedef void check(const surface_case *c, const setting *s, int32_t lattice, const qc__seams *seams);
+typedef void check(const surface_case *c, const setting *s, int32_t lattice,
+                   const qc__seams *seams);
 
 static void for_all(check *body, int32_t lattices) {
     qc_ctx *ctx = context(1);
@@ -40,9 +42,10 @@ static int32_t count_cones(const setting *s) {
     return n;
 }
 
-/* Dimension of the first cohomology with the holonomy as coefficients, plus the positions of cones, minus
- * the global shift: 2 g + b - 2 (4.1), one more for every boundary loop; with trivial holonomy the
- * constants and (closed surfaces) the fundamental class add one each, and the shift acts on the cones only. */
+/* Dimension of the first cohomology with the holonomy as coefficients, plus the positions of cones,
+ * minus the global shift: 2 g + b - 2 (4.1), one more for every boundary loop; with trivial
+ * holonomy the constants and (closed surfaces) the fundamental class add one each, and the shift
+ * acts on the cones only. */
 static void free_variables_are_counted(const surface_case *c, const setting *s, int32_t lattice,
                                        const qc__seams *seams) {
     const qc_mesh *mesh = s->mesh;
@@ -78,7 +81,8 @@ static void test_count(void **state) {
 }
 
 static void assert_integer(complex_t z, double unit) {
-    assert_true(creal(z) / unit == rint(creal(z) / unit) && cimag(z) / unit == rint(cimag(z) / unit));
+    assert_true(creal(z) / unit == rint(creal(z) / unit) &&
+                cimag(z) / unit == rint(cimag(z) / unit));
 }
 
 /* Carries a chart once around v, from a corner of the first wedge: f_end = i^turn f + shift. */
@@ -92,7 +96,9 @@ static int32_t once_around(const setting *s, const qc__seams *seams, const compl
     do {
         const int32_t h = qc_next(c), e = mesh->halfedge_edge[h], k = seams->edge_segment[e];
         const int32_t r = combed_turn(s, h);
-        const complex_t tau = k < 0 ? 0 : seams->edge_left[e] == h ? symbol[k] : -qc__turn(symbol[k], r);
+        const complex_t tau = k < 0                      ? 0
+                              : seams->edge_left[e] == h ? symbol[k]
+                                                         : -qc__turn(symbol[k], r);
         turn = (turn + r) & 3;
         *shift = qc__turn(*shift, r) + tau;
         c = qc_corner_ccw(mesh, c);
