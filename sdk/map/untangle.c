@@ -14,7 +14,8 @@ enum {
     STEPS = 8,  /* of the continuation from the relaxed map                                         */
     GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings                                     */
 };
-static const double star_scale = 0.3;                   /* of a star laid out anew                  */
+/* Of stars laid out anew, by growth: crowded cones want small ones, stretched places large ones. */
+static const double star_scale[GROWTHS] = {0.3, 0.6, 0.1, 1.0, 0.03};
 
 typedef struct untangler {
     qc_ctx *ctx;
@@ -37,6 +38,7 @@ typedef struct untangler {
     int32_t *face_stamp;     /* n_faces: last patch a face was listed in                             */
     int32_t stamp;
     uint8_t *frozen;         /* n_vertices: stars laid out anew keep still while the rest adapts         */
+    double star_scale;
     int32_t *active;         /* n_vertices: of the patch, without the frozen ones                    */
     double *x;               /* 2 n_vertices                                                         */
     qc_complex *saved;       /* n_vertices: values of the patch before it was touched                */
@@ -147,7 +149,7 @@ static bool lay_out_wrong_cones(untangler *u) {
         const int32_t v = u->mesh->face_vertex[3 * (int64_t)u->face[i / 3] + i % 3];
         if (!u->map->pinned[v] || !winds_wrong(u, v)) continue;
         any = true;
-        qc__lay_out_star(&u->guide, v, star_scale);
+        qc__lay_out_star(&u->guide, v, u->star_scale);
         freeze_star(u, v, 1);
     }
     return any;
@@ -339,6 +341,7 @@ static qc_status untangle_growing(untangler *u, int32_t growths, double lo, doub
     for (int32_t i = 0, rings = 3; i < growths && status == QC_OK && *bad > 0; i++, rings *= 2) {
         const double width = (hi - lo) / growths;
         const qc__range outer = qc__range_begin(u->ctx, NULL, lo + i * width, lo + (i + 1) * width);
+        u->star_scale = star_scale[i];
         status = untangle_rings(u, rings, bad);
         qc__range_end(u->ctx, outer);
     }
