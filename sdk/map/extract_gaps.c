@@ -1,82 +1,145 @@
-/* Which boundary loops lie in one gap of the kept cells: sets of sectors between ports which no
- * cell fills, joined along isolines, through split vertices and with the loops they meet. */
+/* The boundary loops of the surface, the open cells they meet, and which loops lie in one gap of
+ * the kept cells: sets of dropped cells joined across sides, around lattice vertices and with the
+ * loops which cut them. */
 #include "sdk/map/extract_internal.h"
 #include "sdk/mesh/internal.h"
 
-/* loop[e] of every boundary edge; start[i]: first vertex of a loop. */
-static void number_loops(const qc_mesh *m, int32_t *loop, int32_t *start) {
+/* of_edge of every boundary edge; start[i]: first vertex of a loop. */
+static void number_loops(const qc_mesh *m, int32_t *of_edge, int32_t *start) {
     int32_t n = 0;
-    for (int32_t e = 0; e < m->n_edges; e++) loop[e] = -1;
+    for (int32_t e = 0; e < m->n_edges; e++) of_edge[e] = -1;
     for (int32_t first = 0; first < 3 * m->n_faces; first++) {
-        if (m->twin[first] >= 0 || loop[m->halfedge_edge[first]] >= 0) continue;
+        if (m->twin[first] >= 0 || of_edge[m->halfedge_edge[first]] >= 0) continue;
         start[n] = qc_halfedge_start(m, first);
         int32_t h = first;
         do {
-            loop[m->halfedge_edge[h]] = n;
+            of_edge[m->halfedge_edge[h]] = n;
             h = qc_prev(m->vertex_corner[qc_halfedge_end(m, h)]);
         } while (h != first);
         n++;
     }
 }
 
+/* The loops of each piece, in the order of its visits; met NULL = count only. */
+static int64_t collect_met(const qc__cells *c, const qc__loops *l, int32_t *met, int64_t n,
+                           int32_t piece) {
+    const qc_grid_map *g = c->pieces.ports->lattice->g;
+    const int64_t unit = (int64_t)1 << g->bits, begin = n;
+    int32_t latest = -1;
+    for (int64_t i = c->pieces.piece[piece].first; i < qc__piece_end(&c->pieces, piece); i++) {
+        const qc__visit *v = &c->pieces.visit[i];
+        for (int k = 0; k < 3; k++) {
+            const int32_t h = 3 * v->face + k, loop = l->of_edge[g->mesh->halfedge_edge[h]];
+            if (loop < 0 || loop == latest) continue;
+            if (!qc__meets_square(qc__in_square(v, qc__grid_corner(g, qc_next(h))),
+                                  qc__in_square(v, qc__grid_corner(g, qc_prev(h))),
+                                  (qc__point){0, 0}, unit))
+                continue;
+            latest = loop;
+            bool known = false;
+            for (int64_t j = begin; met && j < n; j++) known |= met[j] == loop;
+            if (known) continue;
+            if (met) met[n] = loop;
+            n++;
+        }
+    }
+    return n;
+}
+
+qc_status qc__loops_create(qc_ctx *ctx, const qc__cells *cells, qc__loops *out) {
+    const qc_mesh *m = cells->pieces.ports->lattice->g->mesh;
+    const int32_t n_open = cells->n - cells->n_complete;
+    qc__loops l = {.n = m->n_boundary_loops};
+    l.of_edge = QC__NEW(ctx, int32_t, m->n_edges);
+    l.start = QC__NEW(ctx, int32_t, l.n);
+    l.limit = QC__NEW(ctx, double, l.n);
+    l.bridge = QC__ZERO(ctx, uint8_t, l.n);
+    l.first = QC__NEW(ctx, int32_t, (int64_t)n_open + 1);
+    qc_status status = l.of_edge && l.start && l.limit && l.bridge && l.first ? QC_OK
+                                                                              : QC_ERR_NOMEM;
+    if (status == QC_OK) {
+        number_loops(m, l.of_edge, l.start);
+        int64_t n = 0;
+        for (int32_t i = 0; i < n_open; i++) n = collect_met(cells, &l, NULL, n, i);
+        l.met = QC__NEW(ctx, int32_t, n);
+        if (!l.met) status = QC_ERR_NOMEM;
+    }
+    if (status == QC_OK) {
+        int64_t n = 0;
+        for (int32_t i = 0; i < n_open; i++) {
+            l.first[i] = (int32_t)n;
+            n = collect_met(cells, &l, l.met, n, i);
+        }
+        l.first[n_open] = (int32_t)n;
+        *out = l;
+    } else {
+        qc__loops_free(&l);
+    }
+    return status;
+}
+
+void qc__loops_free(qc__loops *l) {
+    qc__free(l->of_edge);
+    qc__free(l->start);
+    qc__free(l->first);
+    qc__free(l->met);
+    qc__free(l->limit);
+    qc__free(l->bridge);
+    *l = (qc__loops){0};
+}
+
 /* The loop through a lattice vertex on the boundary. */
-static int32_t loop_at(const qc__lattice *l, int32_t id, const int32_t *loop) {
+static int32_t loop_at(const qc__lattice *l, int32_t id, const int32_t *of_edge) {
     const qc_mesh *m = l->g->mesh;
     const int32_t home = l->home[id];
-    return loop[id < l->n_at_vertices ? m->halfedge_edge[qc_prev(m->vertex_corner[home])] : home];
+    return of_edge[id < l->n_at_vertices ? m->halfedge_edge[qc_prev(m->vertex_corner[home])]
+                                         : home];
 }
 
-/* Set members: the sectors counter-clockwise of the ports, then the loops. */
-static void join(const qc__ports *p, const qc__cells *c, const int32_t *loop, int32_t *set) {
-    const qc__lattice *l = p->lattice;
-    const qc_mesh *m = l->g->mesh;
-    for (int32_t id = 0; id < l->n; id++) {
-        int32_t gap = qc__lattice_on_boundary(l, id) ? p->n + loop_at(l, id, loop) : -1;
-        for (int32_t i = p->first[id]; i < p->first[id + 1]; i++) {
-            if (c->left[i] >= 0) continue;
-            if (gap >= 0) qc__sets_unite(set, i, gap);
-            gap = i;
-            const int32_t next = qc__next_side(p, i);
-            const int32_t exit = p->mate[i] < 0 ? qc__port_exit(p, i) : -1;
-            if (next >= 0)
-                qc__sets_unite(set, i, next);
-            else if (exit >= 0)
-                qc__sets_unite(set, i, p->n + loop[m->halfedge_edge[exit]]);
-            else if (p->mate[i] >= 0)
-                qc__sets_unite(set, i, p->n + loop_at(l, p->vertex[p->mate[i]], loop));
+/* Set members: the loops, then the open cells. owner: a member at each lattice vertex. */
+static void join(const qc__lattice *lattice, const qc__cells *c, const qc__loops *l, int32_t *set,
+                 int32_t *owner) {
+    for (int32_t id = 0; id < lattice->n; id++)
+        owner[id] =
+            qc__lattice_on_boundary(lattice, id) ? loop_at(lattice, id, l->of_edge) : -1;
+    for (int32_t i = 0; i < c->n - c->n_complete; i++) {
+        const int32_t cell = c->n_complete + i, member = l->n + i;
+        if (c->keep[cell]) continue;
+        for (int32_t j = l->first[i]; j < l->first[i + 1]; j++)
+            qc__sets_unite(set, member, l->met[j]);
+        for (int32_t j = c->contact_first[i]; j < c->contact_first[i + 1]; j++) {
+            const int32_t other = c->contact[2 * (int64_t)j + 1] / 4;
+            if (!c->keep[other]) qc__sets_unite(set, member, l->n + other - c->n_complete);
+        }
+        for (int k = 0; k < 4; k++) {
+            const int32_t id = c->corner[4 * (int64_t)cell + k];
+            if (id < 0) continue;
+            if (owner[id] >= 0)
+                qc__sets_unite(set, member, owner[id]);
+            else
+                owner[id] = member;
         }
     }
-    for (int64_t i = 0; i < c->n_refused; i++)
-        qc__sets_unite(set, c->refused[2 * i],
-                       p->n + loop[m->halfedge_edge[c->refused[2 * i + 1]]]);
 }
 
-qc_status qc__cells_merged_loops(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
-                                 int32_t vertex[2]) {
-    const qc_mesh *m = ports->lattice->g->mesh;
-    const int32_t n = m->n_boundary_loops;
-    int32_t *loop = QC__NEW(ctx, int32_t, m->n_edges), *start = QC__NEW(ctx, int32_t, n);
-    int32_t *set = QC__NEW(ctx, int32_t, (int64_t)ports->n + n);
-    int32_t *owner = QC__NEW(ctx, int32_t, (int64_t)ports->n + n);
-    const qc_status status = loop && start && set && owner ? QC_OK : QC_ERR_NOMEM;
-    vertex[0] = vertex[1] = -1;
+qc_status qc__loops_gaps(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
+                         const qc__loops *loops, int32_t *gap) {
+    const int32_t n = loops->n + cells->n - cells->n_complete;
+    int32_t *set = QC__NEW(ctx, int32_t, n), *owner = QC__NEW(ctx, int32_t, ports->lattice->n);
+    int32_t *lowest = QC__NEW(ctx, int32_t, n);
+    const qc_status status = set && owner && lowest ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
-        number_loops(m, loop, start);
-        qc__sets_init(set, ports->n + n);
-        join(ports, cells, loop, set);
-        for (int32_t i = 0; i < ports->n + n; i++) owner[i] = -1;
-        for (int32_t i = 0; i < n && vertex[0] < 0; i++) {
-            int32_t *first = &owner[qc__sets_find(set, ports->n + i)];
-            if (*first >= 0) {
-                vertex[0] = start[*first];
-                vertex[1] = start[i];
-            }
-            *first = i;
+        qc__sets_init(set, n);
+        join(ports->lattice, cells, loops, set, owner);
+        for (int32_t i = 0; i < n; i++) lowest[i] = -1;
+        for (int32_t i = 0; i < loops->n; i++) {
+            int32_t *first = &lowest[qc__sets_find(set, i)];
+            if (*first < 0) *first = i;
+            gap[i] = *first;
         }
     }
-    qc__free(loop);
-    qc__free(start);
     qc__free(set);
     qc__free(owner);
+    qc__free(lowest);
     return status;
 }

@@ -62,38 +62,119 @@ qc_status qc__ports_trace(qc_ctx *ctx, qc__ports *ports);
 /* The boundary halfedge at which the isoline of an unmatched port leaves the surface, -1 = none. */
 int32_t qc__port_exit(const qc__ports *ports, int32_t port);
 
-/* --- cells (extract_cells.c)
- * ----------------------------------------------------------------------- */
+/* --- pieces of cells (extract_pieces.c) --------------------------------------------------------- */
 
-/* Unit squares bounded by four ports which lie in the surface as a whole. */
-typedef struct qc__cells {
+/* A face as seen from a piece: the square has its first corner at `at` and its first side in
+ * direction d of the face's chart. */
+typedef struct qc__visit {
+    int32_t face, piece;
+    qc__point at;
+    int d;
+} qc__visit;
+
+/* The part of an open unit square of the parameters which is reached from one face. */
+typedef struct qc__piece {
+    int64_t first; /* visits up to those of the next piece */
+    int32_t code;  /* 4 cell + side of the cell which is the first side of the piece, -1 = none */
+    bool disk;     /* simply connected: no hole inside */
+    double area;   /* of the square, 0..1 */
+} qc__piece;
+
+typedef struct qc__pieces {
+    const qc__ports *ports;
     int32_t n;
-    int32_t *port; /* 4 n: ports along the sides, counter-clockwise, the lowest first */
-    int32_t *left; /* ports->n: cell left of a port, -1 = none */
-    int64_t n_refused;
-    int32_t
-        *refused; /* 2 n_refused: lowest port of a square with boundary inside, halfedge of it   */
+    int64_t n_visits, n_slots;
+    qc__piece *piece;
+    qc__visit *visit;
+    int32_t *slot; /* hash table of the visits by face and square */
+    int64_t piece_capacity, visit_capacity;
+} qc__pieces;
+void qc__pieces_free(qc__pieces *pieces);
+/* Index of the visit of this face and square, -1 = none. */
+int32_t qc__pieces_find(const qc__pieces *pieces, qc__visit v);
+/* Adds the piece of the square of v, reached from its face. */
+qc_status qc__pieces_flood(qc_ctx *ctx, qc__pieces *pieces, qc__visit v);
+static inline int64_t qc__piece_end(const qc__pieces *p, int32_t i) {
+    return i + 1 < p->n ? p->piece[i + 1].first : p->n_visits;
+}
+/* Corner k = 0..3 of the square of v in the chart of its face. */
+static inline qc__point qc__square_corner(const qc__visit *v, int k, int64_t unit) {
+    const qc__point corner = {k == 1 || k == 2 ? unit : 0, k >= 2 ? unit : 0};
+    return qc__plus(v->at, qc__turn(corner, v->d));
+}
+/* A point of the face in the square's frame [0, unit]^2. */
+static inline qc__point qc__in_square(const qc__visit *v, qc__point p) {
+    return qc__turn(qc__minus(p, v->at), 4 - v->d);
+}
+/* Whether the segment a b, or the triangle, meets the open square with lower left corner o. */
+bool qc__meets_square(qc__point a, qc__point b, qc__point o, int64_t unit);
+bool qc__triangle_meets_square(const qc__point c[3], qc__point o, int64_t unit);
+
+/* --- cells (extract_cells.c, extract_open.c) ---------------------------------------------------- */
+
+/* Unit squares of the grid: first the complete ones, bounded by four ports and wholly in the
+ * surface; then the open ones, which the boundary of the surface cuts (piece i is cell
+ * n_complete + i). Side k runs from corner k to corner k + 1; sides have codes 4 cell + k. */
+typedef struct qc__cells {
+    int32_t n, n_complete;
+    int32_t *corner; /* 4 n: lattice vertex at the corner, -1 = outside the surface */
+    int32_t *across; /* 4 n: code of the side on the other side of it, -1 = boundary */
+    int32_t *face;   /* n: a face of the cell */
+    int32_t *left;   /* ports->n: side along a port, of a complete cell; -1 = none */
+    uint8_t *keep;   /* n: becomes a quad */
+    int32_t *contact_first;               /* open cells + 1 */
+    int32_t *contact;                     /* 2 each: side of the open cell, side of the other cell   */
+    int64_t n_contacts, contact_capacity; /* pairs */
+    qc__pieces pieces;
 } qc__cells;
+/* The boundary side counter-clockwise after the boundary side a of the kept cells. */
+static inline int32_t qc__next_boundary_side(const qc__cells *c, int32_t a) {
+    int32_t b = (a & ~3) | ((a + 1) & 3);
+    while (c->across[b] >= 0) b = (c->across[b] & ~3) | ((c->across[b] + 1) & 3);
+    return b;
+}
 /* The side after `port` of the cell on its left; -1 = the isoline or the sector ends at the
  * boundary. */
 int32_t qc__next_side(const qc__ports *ports, int32_t port);
 qc_status qc__cells_create(qc_ctx *ctx, const qc__ports *ports, qc__cells *out);
 void qc__cells_free(qc__cells *cells);
-/* On meshes with boundary: keeps the largest edge-connected set of cells of each component. FAILED
- * when the rest is no copy of the component (extract_keep.c). */
+/* The pieces of the open cells; their corners and contacts (after the complete cells). */
+qc_status qc__open_pieces(qc_ctx *ctx, const qc__ports *ports, qc__pieces *out);
+qc_status qc__open_cells(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells);
+
+/* --- choice of the open cells (extract_keep.c, extract_choice.c, extract_gaps.c) ----------------- */
+
+/* On meshes with boundary: which open cells are kept and how cells are joined. FAILED when the kept
+ * cells are no copy of each component. */
 qc_status qc__cells_keep(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells);
-/* Two boundary loops which the kept cells do not separate, by a vertex of each; -1 = there are none
- * (extract_gaps.c). */
-qc_status qc__cells_merged_loops(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
-                                 int32_t vertex[2]);
 
-/* --- result (extract_quads.c)
- * ----------------------------------------------------------------------- */
+/* The boundary loops of the mesh and the open cells they meet. */
+typedef struct qc__loops {
+    int32_t n;
+    int32_t *of_edge; /* n_edges: loop, -1 = interior */
+    int32_t *start;   /* n: first vertex */
+    int32_t *first;   /* open cells + 1 */
+    int32_t *met;     /* loops met by each open cell */
+    double *limit;    /* n: least coverage of cells on the loop which are kept */
+    uint8_t *bridge;  /* n: cells which hang on a vertex are to be joined */
+} qc__loops;
+qc_status qc__loops_create(qc_ctx *ctx, const qc__cells *cells, qc__loops *out);
+void qc__loops_free(qc__loops *loops);
+/* gap[loop] = lowest loop in the same gap of the kept cells. */
+qc_status qc__loops_gaps(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
+                         const qc__loops *loops, int32_t *gap);
+/* Sets keep and across from the limits of the loops. set: 4 n, corners joined (sets). */
+qc_status qc__choose(qc_ctx *ctx, qc__cells *cells, const qc__loops *loops, int32_t *set);
 
-/* Output vertex of the cell left of each port, at the port's lattice vertex: cells which follow
- * each other around a lattice vertex share it. vertex: ports->n, -1 = no cell. Returns the number
- * of vertices. */
-int32_t qc__quad_vertices(const qc__ports *ports, const qc__cells *cells, int32_t *vertex);
+/* --- result (extract_vertices.c, extract_place.c, extract_quads.c) ------------------------------- */
+
+/* Output vertex of each corner of the kept cells: corners which cells share across their sides.
+ * vertex: 4 n, -1 = not kept. *n_lattice of the *n_vertices, the first ones, are lattice vertices. */
+qc_status qc__quad_vertices(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
+                            int32_t *vertex, int32_t *n_lattice, int32_t *n_vertices);
+/* Puts the vertices outside the surface on its boundary. */
+qc_status qc__place_outside(qc_ctx *ctx, const qc__cells *cells, const int32_t *vertex,
+                            int32_t n_lattice, qc_polygon_mesh *q);
 qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
                            qc_polygon_mesh **out);
 

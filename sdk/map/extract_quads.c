@@ -1,29 +1,6 @@
 /* The quad mesh of the kept cells: shared vertices, positions, sources. */
 #include "sdk/map/extract_internal.h"
 
-int32_t qc__quad_vertices(const qc__ports *p, const qc__cells *c, int32_t *vertex) {
-    int32_t n = 0;
-    for (int32_t id = 0; id < p->lattice->n; id++) {
-        const int32_t first = p->first[id], last = p->first[id + 1];
-        const bool cyclic = !qc__lattice_on_boundary(p->lattice, id);
-        int32_t run = -1; /* vertex of the cells since the last gap */
-        for (int32_t i = first; i < last; i++) {
-            if (c->left[i] < 0) {
-                run = -1;
-                vertex[i] = -1;
-                continue;
-            }
-            if (run < 0) run = n++;
-            vertex[i] = run;
-        }
-        /* The last run of a full turn goes on in the first one. */
-        if (!cyclic || run < 0 || vertex[first] < 0 || vertex[first] == run) continue;
-        for (int32_t i = last - 1; vertex[i] == run; i--) vertex[i] = vertex[first];
-        n--;
-    }
-    return n;
-}
-
 /* Source face, exact orientations over the whole, and the point of the surface. */
 static void place_vertex(const qc__lattice *l, int32_t id, qc_polygon_mesh *q, int32_t v) {
     const qc_mesh *m = l->g->mesh;
@@ -44,23 +21,37 @@ static void place_vertex(const qc__lattice *l, int32_t id, qc_polygon_mesh *q, i
     }
 }
 
+static qc_status fill(qc_ctx *ctx, const qc__ports *p, const qc__cells *c, const int32_t *vertex,
+                      int32_t n_lattice, qc_polygon_mesh *q) {
+    int32_t n = 0;
+    for (int32_t cell = 0; cell < c->n; cell++) {
+        if (!c->keep[cell]) continue;
+        q->face_offset[n / 4] = n;
+        for (int k = 0; k < 4; k++) q->face_vertex[n++] = vertex[4 * (int64_t)cell + k];
+    }
+    q->face_offset[n / 4] = n;
+    for (int32_t a = 0; a < 4 * c->n; a++)
+        if (vertex[a] >= 0 && vertex[a] < n_lattice && c->corner[a] >= 0)
+            place_vertex(p->lattice, c->corner[a], q, vertex[a]);
+    return n_lattice < q->n_vertices ? qc__place_outside(ctx, c, vertex, n_lattice, q) : QC_OK;
+}
+
 qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *p, const qc__cells *c,
                            qc_polygon_mesh **out) {
-    if (c->n > INT32_MAX / 4)
-        return qc__fail(ctx, QC_ERR_FAILED, -1, "too many quads; try a coarser density");
-    int32_t *vertex = QC__NEW(ctx, int32_t, p->n);
+    int32_t *vertex = QC__NEW(ctx, int32_t, 4 * (int64_t)c->n);
     if (!vertex) return QC_ERR_NOMEM;
-    const int32_t n = qc__quad_vertices(p, c, vertex);
+    int32_t n_lattice = 0, n_vertices = 0, n_quads = 0;
+    for (int32_t cell = 0; cell < c->n; cell++) n_quads += c->keep[cell] != 0;
     qc_polygon_mesh *q = NULL;
-    const qc_status status =
-        qc_polygon_mesh_create(ctx, n, c->n, 4 * c->n, 0, 0, QC_POLYGON_SOURCE, &q);
-    if (status == QC_OK) {
-        for (int32_t i = 0; i <= c->n; i++) q->face_offset[i] = 4 * i;
-        for (int32_t i = 0; i < 4 * c->n; i++) q->face_vertex[i] = vertex[c->port[i]];
-        for (int32_t i = 0; i < p->n; i++)
-            if (vertex[i] >= 0) place_vertex(p->lattice, p->vertex[i], q, vertex[i]);
+    qc_status status = qc__quad_vertices(ctx, p, c, vertex, &n_lattice, &n_vertices);
+    if (status == QC_OK)
+        status = qc_polygon_mesh_create(ctx, n_vertices, n_quads, 4 * n_quads, 0, 0,
+                                        QC_POLYGON_SOURCE, &q);
+    if (status == QC_OK) status = fill(ctx, p, c, vertex, n_lattice, q);
+    if (status == QC_OK)
         *out = q;
-    }
+    else
+        qc_object_release(q);
     qc__free(vertex);
     return status;
 }

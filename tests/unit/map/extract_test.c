@@ -60,19 +60,34 @@ static void coarse_triangles_hold_many_quads(void **state) {
     extract_count(ctx, &l, 10000, 1, 1, 0);
 }
 
-/* The reference for a convex piece: the unit squares with all four corners inside it. */
-static int32_t squares_inside(const double *polygon, int n) {
+/* The reference for a convex piece: the unit squares of which it covers half or more. */
+static int32_t squares_covered(const double *polygon, int n) {
     int32_t count = 0;
     for (int x = -40; x < 40; x++)
         for (int y = -40; y < 40; y++) {
-            bool inside = true;
-            for (int i = 0; i < n; i++) {
+            double p[2][64] = {{x, y, x + 1, y, x + 1, y + 1, x, y + 1}};
+            int m = 4, now = 0;
+            for (int i = 0; i < n; i++, now = !now) { /* clipped by one side of the piece */
                 const double *a = polygon + 2 * i, *b = polygon + 2 * ((i + 1) % n);
-                for (int c = 0; c < 4; c++)
-                    inside &=
-                        (b[0] - a[0]) * (y + c / 2 - a[1]) > (b[1] - a[1]) * (x + c % 2 - a[0]);
+                int kept = 0;
+                for (int j = 0; j < m; j++) {
+                    const double *c = p[now] + 2 * j, *d = p[now] + 2 * ((j + 1) % m);
+                    const double sc = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                    const double sd = (b[0] - a[0]) * (d[1] - a[1]) - (b[1] - a[1]) * (d[0] - a[0]);
+                    if (sc >= 0) memcpy(p[!now] + 2 * kept++, c, 2 * sizeof *c);
+                    if ((sc >= 0) == (sd >= 0)) continue;
+                    for (int k = 0; k < 2; k++)
+                        p[!now][2 * kept + k] = c[k] + sc / (sc - sd) * (d[k] - c[k]);
+                    kept++;
+                }
+                m = kept;
             }
-            count += inside;
+            double twice = 0;
+            for (int j = 0; j < m; j++) {
+                const double *c = p[now] + 2 * j, *d = p[now] + 2 * ((j + 1) % m);
+                twice += (c[0] - x) * (d[1] - y) - (c[1] - y) * (d[0] - x);
+            }
+            count += twice >= 1 - 1e-6;
         }
     return count;
 }
@@ -91,7 +106,7 @@ static void turned_rectangles_match_the_reference(void **state) {
         }
         maps_list l = maps_plane(3 + trial % 20, w, h, 0.25, angle, u, v, &r);
         maps_gauge(&l, &r);
-        extract_count(ctx, &l, squares_inside(polygon, 4), 1, 1, 0);
+        extract_count(ctx, &l, squares_covered(polygon, 4), 1, 1, 0);
     }
 }
 
@@ -138,13 +153,13 @@ static void cones_of_many_turns(void **state) {
     qc_ctx *ctx = *state;
     for (int turns = 1; turns <= 13; turns++) {
         maps_list l = maps_cone(turns, 5, 4.3, 1, -2);
-        /* squares of a quarter inside a 16-gon of radius 4.3 (inradius 4.22) */
+        /* squares of a quarter covered by a 16-gon of radius 4.3 (inradius 4.22) */
         double polygon[32];
         for (int i = 0; i < 16; i++) {
             polygon[2 * i] = 4.3 * cos(3.14159265358979 * i / 8);
             polygon[2 * i + 1] = 4.3 * sin(3.14159265358979 * i / 8);
         }
-        const int32_t quarter = squares_inside(polygon, 16) / 4;
+        const int32_t quarter = squares_covered(polygon, 16) / 4;
         if (turns == 1) { /* a vertex with one quad would have that quad meet itself */
             qc_corner_map *map = maps_finish(ctx, &l);
             qc_grid_map *grid = NULL;
