@@ -10,8 +10,8 @@
 #include <string.h>
 
 static const double good_det = 1e-4;                    /* faces below it count as folded           */
+static const double longest_step = 0.125, shortest_step = 0.125 / 16; /* of the continuation         */
 enum {
-    STEPS = 8,  /* of the continuation from the relaxed map                                         */
     GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings                                     */
 };
 /* Of stars laid out anew, by growth: crowded cones want small ones, stretched places large ones. */
@@ -348,40 +348,61 @@ static qc_status untangle_growing(untangler *u, int32_t growths, double lo, doub
     return status;
 }
 
-/* Puts the working map at `step` of STEPS between the relaxed and the rounded one: transitions and cones exactly,
- * other vertices by adding the difference of the step to where they are. */
-static void advance(untangler *u, const qc__reduced_map *relaxed, int32_t step) {
+/* Moves the working map from `from` to `to` on the way from the relaxed (0) to the rounded map (1): transitions
+ * and cones exactly, other vertices by their share of the difference. */
+static void advance(untangler *u, const qc__reduced_map *relaxed, double from, double to) {
     const qc__reduced_map *end = u->target;
-    const double s = (double)step / STEPS, d = step == 0 ? 0.0 : 1.0 / STEPS;
     for (int64_t c = 0; c < 3 * (int64_t)u->mesh->n_faces; c++) {
         const qc_complex a = relaxed->offset[c], b = end->offset[c];
-        u->map->offset[c] = step == STEPS ? b
-                                          : (qc_complex){a.re + s * (b.re - a.re),
-                                                         a.im + s * (b.im - a.im)};
+        u->map->offset[c] = (qc_complex){a.re + to * (b.re - a.re), a.im + to * (b.im - a.im)};
+        if (to >= 1) u->map->offset[c] = b;
     }
     for (int32_t v = 0; v < u->mesh->n_vertices; v++) {
         const qc_complex a = relaxed->value[v], b = end->value[v];
-        const bool fixed = u->map->pinned[v] || step == 0;
-        const qc_complex from = fixed ? a : u->map->value[v];
-        const double by = fixed ? s : d;
-        u->map->value[v] =
-            (qc_complex){from.re + by * (b.re - a.re), from.im + by * (b.im - a.im)};
-        if (step == STEPS && u->map->pinned[v]) u->map->value[v] = b;
+        const bool fixed = u->map->pinned[v];
+        const qc_complex p = fixed ? a : u->map->value[v];
+        const double by = fixed ? to : to - from;
+        u->map->value[v] = (qc_complex){p.re + by * (b.re - a.re), p.im + by * (b.im - a.im)};
+        if (fixed && to >= 1) u->map->value[v] = b;
     }
 }
 
 /* Continuation: the relaxed map rarely folds; on the way to the rounded one each step folds little, so the cones
- * keep their winding. */
+ * keep their winding. A step that leaves fold-overs is taken back and halved, down to shortest_step. */
+static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
+                                   qc_complex *stable) {
+    const size_t size = sizeof *stable * (size_t)u->mesh->n_vertices;
+    memcpy(u->map->value, relaxed->value, size);
+    advance(u, relaxed, 0, 0);
+    int32_t bad = 0;
+    qc_status status = untangle_growing(u, GROWTHS, 0.0, 0.1, &bad);
+    double at = 0, step = longest_step;
+    while (at < 1 && status == QC_OK) {
+        const double to = at + step < 1 ? at + step : 1;
+        memcpy(stable, u->map->value, size);
+        advance(u, relaxed, at, to);
+        status = untangle_growing(u, 3, 0.1 + 0.7 * at, 0.1 + 0.7 * to, &bad);
+        if (status == QC_OK && mark_neighbourhood(u, 0) > 0 && step > shortest_step) {
+            memcpy(u->map->value, stable, size);
+            step *= 0.5;
+            continue;
+        }
+        at = to;
+        if (2 * step <= longest_step) step *= 2;
+    }
+    return status;
+}
+
 static qc_status continue_from(untangler *u, const qc_corner_map *map, const qc_grid_map *grid) {
     qc__reduced_map *relaxed = NULL;
-    qc_status status = qc__reduced_map_create(u->ctx, map->mesh, map->relaxed, u->rotation,
-                                              grid->holonomy, false, &relaxed);
-    for (int32_t step = 0; step <= STEPS && status == QC_OK; step++) {
-        int32_t bad = 0;
-        advance(u, relaxed, step);
-        status = untangle_growing(u, 3, 0.8 * step / (STEPS + 1), 0.8 * (step + 1) / (STEPS + 1), &bad);
-    }
+    qc_complex *stable = QC__NEW(u->ctx, qc_complex, u->mesh->n_vertices);
+    qc_status status = stable ? QC_OK : QC_ERR_NOMEM;
+    if (status == QC_OK)
+        status = qc__reduced_map_create(u->ctx, map->mesh, map->relaxed, u->rotation,
+                                        grid->holonomy, false, &relaxed);
+    if (status == QC_OK) status = walk_from_relaxed(u, relaxed, stable);
     qc__reduced_map_free(relaxed);
+    qc__free(stable);
     return status;
 }
 
