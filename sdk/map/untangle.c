@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const double good_det = 1e-4;                    /* faces below it count as folded           */
-static const double longest_step = 0.125, shortest_step = 0.125 / 16; /* of the continuation         */
+static const double longest_step = 0.125, shortest_step = 0.125 / 8; /* of the continuation         */
 enum {
     GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings                                     */
 };
@@ -348,9 +348,35 @@ static qc_status untangle_growing(untangler *u, int32_t growths, double lo, doub
     return status;
 }
 
+/* How far vertices go on the whole way. Cones which wind wrong in the rounded map take their stars along: the harmonic
+ * displacement would fold them at once. */
+static void plan_drift(untangler *u, const qc__reduced_map *relaxed, qc_complex *drift) {
+    const qc__reduced_map *end = u->target;
+    for (int32_t v = 0; v < u->mesh->n_vertices; v++)
+        drift[v] = (qc_complex){end->value[v].re - relaxed->value[v].re,
+                                end->value[v].im - relaxed->value[v].im};
+    for (int32_t v = 0; v < u->mesh->n_vertices; v++) {
+        if (!winds_wrong(u, v)) continue;
+        const int32_t start = u->mesh->vertex_corner[v];
+        int32_t c = start;
+        do {
+            const int32_t n = qc_next(c), w = u->mesh->face_vertex[n];
+            const qc_complex own = qc_quarter_turn(drift[v], end->turn[c]);
+            const qc_complex there = {
+                own.re + (end->offset[c].re - relaxed->offset[c].re) -
+                    (end->offset[n].re - relaxed->offset[n].re),
+                own.im + (end->offset[c].im - relaxed->offset[c].im) -
+                    (end->offset[n].im - relaxed->offset[n].im)};
+            if (!u->map->pinned[w]) drift[w] = qc_quarter_turn(there, -end->turn[n]);
+            c = qc_corner_ccw(u->mesh, c);
+        } while (c >= 0 && c != start);
+    }
+}
+
 /* Moves the working map from `from` to `to` on the way from the relaxed (0) to the rounded map (1): transitions
  * and cones exactly, other vertices by their share of the difference. */
-static void advance(untangler *u, const qc__reduced_map *relaxed, double from, double to) {
+static void advance(untangler *u, const qc__reduced_map *relaxed, const qc_complex *drift,
+                    double from, double to) {
     const qc__reduced_map *end = u->target;
     for (int64_t c = 0; c < 3 * (int64_t)u->mesh->n_faces; c++) {
         const qc_complex a = relaxed->offset[c], b = end->offset[c];
@@ -358,29 +384,28 @@ static void advance(untangler *u, const qc__reduced_map *relaxed, double from, d
         if (to >= 1) u->map->offset[c] = b;
     }
     for (int32_t v = 0; v < u->mesh->n_vertices; v++) {
-        const qc_complex a = relaxed->value[v], b = end->value[v];
         const bool fixed = u->map->pinned[v];
-        const qc_complex p = fixed ? a : u->map->value[v];
+        const qc_complex p = fixed ? relaxed->value[v] : u->map->value[v];
         const double by = fixed ? to : to - from;
-        u->map->value[v] = (qc_complex){p.re + by * (b.re - a.re), p.im + by * (b.im - a.im)};
-        if (fixed && to >= 1) u->map->value[v] = b;
+        u->map->value[v] = (qc_complex){p.re + by * drift[v].re, p.im + by * drift[v].im};
+        if (fixed && to >= 1) u->map->value[v] = end->value[v];
     }
 }
 
 /* Continuation: the relaxed map rarely folds; on the way to the rounded one each step folds little, so the cones
  * keep their winding. A step that leaves fold-overs is taken back and halved, down to shortest_step. */
 static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
-                                   qc_complex *stable) {
+                                   const qc_complex *drift, qc_complex *stable) {
     const size_t size = sizeof *stable * (size_t)u->mesh->n_vertices;
     memcpy(u->map->value, relaxed->value, size);
-    advance(u, relaxed, 0, 0);
+    advance(u, relaxed, drift, 0, 0);
     int32_t bad = 0;
     qc_status status = untangle_growing(u, GROWTHS, 0.0, 0.1, &bad);
     double at = 0, step = longest_step;
     while (at < 1 && status == QC_OK) {
         const double to = at + step < 1 ? at + step : 1;
         memcpy(stable, u->map->value, size);
-        advance(u, relaxed, at, to);
+        advance(u, relaxed, drift, at, to);
         status = untangle_growing(u, 3, 0.1 + 0.7 * at, 0.1 + 0.7 * to, &bad);
         if (status == QC_OK && mark_neighbourhood(u, 0) > 0 && step > shortest_step) {
             memcpy(u->map->value, stable, size);
@@ -396,13 +421,18 @@ static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
 static qc_status continue_from(untangler *u, const qc_corner_map *map, const qc_grid_map *grid) {
     qc__reduced_map *relaxed = NULL;
     qc_complex *stable = QC__NEW(u->ctx, qc_complex, u->mesh->n_vertices);
-    qc_status status = stable ? QC_OK : QC_ERR_NOMEM;
+    qc_complex *drift = QC__NEW(u->ctx, qc_complex, u->mesh->n_vertices);
+    qc_status status = stable && drift ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK)
         status = qc__reduced_map_create(u->ctx, map->mesh, map->relaxed, u->rotation,
                                         grid->holonomy, false, &relaxed);
-    if (status == QC_OK) status = walk_from_relaxed(u, relaxed, stable);
+    if (status == QC_OK) {
+        plan_drift(u, relaxed, drift);
+        status = walk_from_relaxed(u, relaxed, drift, stable);
+    }
     qc__reduced_map_free(relaxed);
     qc__free(stable);
+    qc__free(drift);
     return status;
 }
 
