@@ -1,6 +1,7 @@
-/* Choice of the open cells: those covered by half or more, where two loops would merge less; cells
+/* Choice of the open cells: those covered by half or more, or in their centre; where two loops would merge less; cells
  * which hang on one vertex are joined by the better covered of the cells between; a loop which the
  * cells would close gets a cell back. Bounded: every step walks the open cells once. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,7 +59,10 @@ static void keep_covered(choice *s) {
         double limit = 0.5;
         for (int32_t j = s->l->first[i]; j < s->l->first[i + 1]; j++)
             if (s->l->limit[s->l->met[j]] < limit) limit = s->l->limit[s->l->met[j]];
-        c->keep[cell] = piece_of(s, cell)->disk && piece_of(s, cell)->area >= limit - 1e-9;
+        const qc__piece *p = piece_of(s, cell);
+        /* a corner of the surface which holds the centre of the square covers a quarter */
+        if (p->middle) limit = fmin(limit, 0.25);
+        c->keep[cell] = p->disk && p->area >= limit - 1e-9;
     }
 }
 

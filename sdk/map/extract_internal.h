@@ -77,6 +77,7 @@ typedef struct qc__piece {
     int64_t first; /* visits up to those of the next piece */
     int32_t code;  /* 4 cell + side of the cell which is the first side of the piece, -1 = none */
     bool disk;     /* simply connected: no hole inside */
+    bool middle;   /* holds the centre of the square */
     double area;   /* of the square, 0..1 */
 } qc__piece;
 
@@ -172,9 +173,9 @@ qc_status qc__choose(qc_ctx *ctx, qc__cells *cells, const qc__loops *loops, int3
  * vertex: 4 n, -1 = not kept. *n_lattice of the *n_vertices, the first ones, are lattice vertices. */
 qc_status qc__quad_vertices(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
                             int32_t *vertex, int32_t *n_lattice, int32_t *n_vertices);
-/* Puts the vertices outside the surface on its boundary. */
-qc_status qc__place_outside(qc_ctx *ctx, const qc__cells *cells, const int32_t *vertex,
-                            int32_t n_lattice, qc_polygon_mesh *q);
+/* Puts the vertices outside the surface on its boundary and moves those next to it. */
+qc_status qc__place_rim(qc_ctx *ctx, const qc__cells *cells, const int32_t *vertex,
+                        int32_t n_lattice, qc_polygon_mesh *q);
 qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
                            qc_polygon_mesh **out);
 

@@ -141,6 +141,13 @@ void qc__pieces_free(qc__pieces *p) {
 
 /* --- flood -------------------------------------------------------------------------------------- */
 
+static bool holds_centre(const qc__point c[3], int64_t unit) {
+    const qc__point centre = {unit / 2, unit / 2};
+    for (int k = 0; k < 3; k++)
+        if (qc__cross(qc__minus(c[(k + 1) % 3], c[k]), qc__minus(centre, c[k])) < 0) return false;
+    return true;
+}
+
 static bool in_open_square(qc__point p, int64_t unit) {
     return p.u > 0 && p.u < unit && p.v > 0 && p.v < unit;
 }
@@ -156,6 +163,7 @@ qc_status qc__pieces_flood(qc_ctx *ctx, qc__pieces *p, qc__visit first) {
     p->piece[p->n++] = (qc__piece){.first = begin, .code = -1};
     if (!push(ctx, p, first)) return QC_ERR_NOMEM;
     double area = 0;
+    bool middle = false;
     int64_t half_edges = 0, vertices = 0; /* inside the surface and the square */
     for (int64_t i = begin; i < p->n_visits; i++) {
         const qc__visit v = p->visit[i];
@@ -167,6 +175,7 @@ qc_status qc__pieces_flood(qc_ctx *ctx, qc__pieces *p, qc__visit first) {
                         in_open_square(corner[k], unit);
         }
         area += covered(corner, unit);
+        middle |= holds_centre(corner, unit);
         for (int k = 0; k < 3; k++) {
             const int32_t h = 3 * v.face + k;
             if (m->twin[h] < 0 || !qc__meets_square(corner[(k + 1) % 3], corner[(k + 2) % 3],
@@ -182,6 +191,7 @@ qc_status qc__pieces_flood(qc_ctx *ctx, qc__pieces *p, qc__visit first) {
     /* F - E + V of the open faces, inner edges and inner vertices is 1 for a disk. */
     qc__piece *piece = &p->piece[p->n - 1];
     piece->area = area;
+    piece->middle = middle;
     piece->disk = 2 * (p->n_visits - begin) - half_edges + 2 * vertices == 2 && area < 1 + 1e-6;
     return QC_OK;
 }

@@ -33,7 +33,7 @@ static qc_status fill(qc_ctx *ctx, const qc__ports *p, const qc__cells *c, const
     for (int32_t a = 0; a < 4 * c->n; a++)
         if (vertex[a] >= 0 && vertex[a] < n_lattice && c->corner[a] >= 0)
             place_vertex(p->lattice, c->corner[a], q, vertex[a]);
-    return n_lattice < q->n_vertices ? qc__place_outside(ctx, c, vertex, n_lattice, q) : QC_OK;
+    return c->n > c->n_complete ? qc__place_rim(ctx, c, vertex, n_lattice, q) : QC_OK;
 }
 
 qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *p, const qc__cells *c,

@@ -95,19 +95,6 @@ static double signed_area(const qc_complex *f, int32_t n_faces) {
     return area;
 }
 
-/* Unit cells wholly inside a map: its area, less half of the cells met by an unaligned boundary of length l,
- * about 4 l / pi of them (Cauchy-Crofton). */
-static double expected_quads(const qc_mesh *mesh, const qc_complex *f) {
-    const double pi = 3.14159265358979323846;
-    double length = 0;
-    for (int32_t h = 0; mesh->n_boundary_edges > 0 && h < 3 * mesh->n_faces; h++)
-        if (mesh->twin[h] < 0) {
-            const qc_complex a = f[qc_next(h)], b = f[qc_prev(h)];
-            length += hypot(b.re - a.re, b.im - a.im);
-        }
-    return signed_area(f, mesh->n_faces) - 2.0 / pi * length;
-}
-
 static double dirichlet_energy(const rounding *r, const qc_complex *f) {
     double energy = 0;
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
@@ -164,7 +151,7 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     }
     r->moves += result.moves;
     r->evaluations += result.evaluations;
-    *quads = expected_quads(r->mesh, r->trial);
+    *quads = signed_area(r->trial, r->mesh->n_faces);
     const double miss = wanted > 0 ? fabs(*quads / wanted - 1.0) : 0.0;
     if (r->best_scale > 0 && miss >= r->best_miss - slack) return QC_OK;
     qc_complex *swap = r->best;

@@ -60,7 +60,8 @@ static void coarse_triangles_hold_many_quads(void **state) {
     extract_count(ctx, &l, 10000, 1, 1, 0);
 }
 
-/* The reference for a convex piece: the unit squares of which it covers half or more. */
+/* The reference for a convex piece: the unit squares of which it covers half or more, or the centre
+ * and a quarter. */
 static int32_t squares_covered(const double *polygon, int n) {
     int32_t count = 0;
     for (int x = -40; x < 40; x++)
@@ -87,7 +88,12 @@ static int32_t squares_covered(const double *polygon, int n) {
                 const double *c = p[now] + 2 * j, *d = p[now] + 2 * ((j + 1) % m);
                 twice += (c[0] - x) * (d[1] - y) - (c[1] - y) * (d[0] - x);
             }
-            count += twice >= 1 - 1e-6;
+            bool centre = true;
+            for (int i = 0; i < n; i++) {
+                const double *a = polygon + 2 * i, *b = polygon + 2 * ((i + 1) % n);
+                centre &= (b[0] - a[0]) * (y + 0.5 - a[1]) > (b[1] - a[1]) * (x + 0.5 - a[0]);
+            }
+            count += twice >= 1 - 1e-6 || (centre && twice >= 0.5);
         }
     return count;
 }
