@@ -402,16 +402,19 @@ static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
     int32_t bad = 0;
     qc_status status = untangle_growing(u, GROWTHS, 0.0, 0.1, &bad);
     double at = 0, step = longest_step;
+    bool stuck = false;
     while (at < 1 && status == QC_OK) {
         const double to = at + step < 1 ? at + step : 1;
         memcpy(stable, u->map->value, size);
         advance(u, relaxed, drift, at, to);
-        status = untangle_growing(u, 3, 0.1 + 0.7 * at, 0.1 + 0.7 * to, &bad);
-        if (status == QC_OK && mark_neighbourhood(u, 0) > 0 && step > shortest_step) {
+        status = untangle_growing(u, stuck ? 1 : 3, 0.1 + 0.7 * at, 0.1 + 0.7 * to, &bad);
+        const bool folds = status == QC_OK && !stuck && mark_neighbourhood(u, 0) > 0;
+        if (folds && step > shortest_step) {
             memcpy(u->map->value, stable, size);
             step *= 0.5;
             continue;
         }
+        stuck |= folds; /* smaller steps do not help either: walk on for the sake of the others      */
         at = to;
         if (2 * step <= longest_step) step *= 2;
     }
