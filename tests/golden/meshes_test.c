@@ -4,9 +4,9 @@
 #include "tests/golden/golden.h"
 
 static const golden_failure expected_failure[] = {
-    {"armadillo.obj", "extract", "map folds over"},
-    {"cow.off", "extract", "map folds over"},
-    {NULL, NULL, NULL},
+    {"armadillo.obj", "extract", "map folds over", false},
+    {"cow.off", "extract", "map folds over", false},
+    {NULL, NULL, NULL, false},
 };
 
 static int is_mesh(const struct dirent *entry) {
