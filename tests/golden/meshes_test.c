@@ -4,7 +4,6 @@
 #include "tests/golden/golden.h"
 
 static const golden_failure expected_failure[] = {
-    {"armadillo.obj", "extract", "map folds over", false},
     {"cow.off", "extract", "map folds over", false},
     {NULL, NULL, NULL, false},
 };
