@@ -122,6 +122,11 @@ static void integers_close_around_vertices(const surface_case *c, const setting 
         for (int32_t i = 0; i < seams->n_free; i++) { /* free symbols in units of their lattice */
             const int32_t j = seams->free_symbol[i];
             assert_true(symbol[j] == seams->scale[j] * x[i]);
+            if (j < seams->n_segments) continue;
+            /* the coarsest lattice on which the loop about a cone has integer translation */
+            const int32_t turns = seams->cone_turn[j - seams->n_segments];
+            const complex_t unit = (1 - qc__turn(1, turns)) * seams->scale[j];
+            if (lattice == QC_LATTICE_INTEGER && turns != 0) assert_true(cabs(unit - 1) < 1e-15);
         }
         const int32_t fixed = seams->fixed_symbol[0];
         if (fixed >= 0) assert_true(symbol[fixed] == 0);
