@@ -41,7 +41,7 @@ def shade(normal, depth, colour):
         size = math.sqrt(sum(x * x for x in direction))
         light += strength * max(0.0, sum(x * y for x, y in zip(n, direction)) / size)
     light *= 0.72 + 0.28 * depth  # far parts are darker
-    return tuple(min(255, int(255 * (c / 255 * light) ** 0.85)) for c in colour)
+    return tuple(min(255, int(255 * (c / 255 * max(light, 0.0)) ** 0.85)) for c in colour)
 
 
 def raster(image, size, mesh, colours, view, fit, box, line):

@@ -284,6 +284,25 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
     return QC_OK;
 }
 
+/* No quadrangulation of the torus has exactly two irregular vertices of valence 3 and 5: the holonomy of such a flat
+ * metric would be trivial (Izmestiev, Kusner, Rote, Springborn, Sullivan 2013). */
+static qc_status refuse_impossible(const rounding *r) {
+    const qc_mesh *mesh = r->mesh;
+    const qc_matching *matching = r->seamless->matching;
+    if (mesh->n_components != 1 || mesh->n_boundary_edges > 0 || mesh->genus != 1 ||
+        matching->n_singular != 2)
+        return QC_OK;
+    int32_t cone[2] = {-1, -1};
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (matching->index4[v] == 1 || matching->index4[v] == -1)
+            cone[matching->index4[v] < 0] = v;
+    if (cone[0] < 0 || cone[1] < 0) return QC_OK;
+    return qc__fail(r->ctx, QC_ERR_FAILED, cone[0],
+                    "no quad mesh of a torus has exactly one vertex of valence 3 (here %d) and one of "
+                    "valence 5 (here %d); smooth the field or give it more singularities",
+                    (int)cone[0], (int)cone[1]);
+}
+
 qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless, const qc_round_options *options,
                        qc_corner_map **out) {
     rounding r = {.ctx = ctx, .seamless = seamless, .mesh = seamless->matching->field->mesh};
@@ -292,7 +311,8 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless, const qc_ro
         memcpy(&r.options, options,
                options->struct_size < sizeof r.options ? options->struct_size : sizeof r.options);
     if (!(r.options.tolerance > 0)) r.options.tolerance = 0.02;
-    qc_status status = prepare(&r);
+    qc_status status = refuse_impossible(&r);
+    if (status == QC_OK) status = prepare(&r);
     if (status == QC_OK) status = make_period_matrix(&r);
     if (status == QC_OK) status = meet_density(&r);
     if (status == QC_OK && r.collisions > 0)
