@@ -19,7 +19,6 @@
 typedef struct golden_failure {
     const char *name;        /* of the model */
     const char *step, *text; /* of the pipeline; part of the message */
-    bool hopeless; /* proved impossible: untangling is left out, it would search in vain */
 } golden_failure;
 
 static inline const golden_failure *golden_expected(const golden_failure *list, const char *name) {
@@ -48,7 +47,7 @@ static inline qc_polygon_mesh *golden_soup(qc_ctx *ctx, const qc_mesh *mesh) {
 }
 
 static inline qc_status golden_run(qc_ctx *ctx, const qc_polygon_mesh *soup, double quads,
-                                   const char *field, bool untangle, qc_remesh_result *result) {
+                                   const char *field, qc_remesh_result *result) {
     qc_default_pipeline_options options = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
     qc_remesh_options strict = QC_REMESH_OPTIONS_INIT;
     qc_registry *registry = NULL;
@@ -58,8 +57,6 @@ static inline qc_status golden_run(qc_ctx *ctx, const qc_polygon_mesh *soup, dou
     strict.strict = 1;
     assert_int_equal(qc_registry_create(ctx, &registry), QC_OK);
     qc_status status = qc_default_pipeline(ctx, registry, &options, &pipeline);
-    if (status == QC_OK && !untangle)
-        status = qc_pipeline_set(pipeline, "untangle", "enabled", "false");
     if (status == QC_OK) status = qc_remesh(ctx, pipeline, soup, &strict, result);
     qc_pipeline_free(pipeline);
     qc_registry_free(registry);
@@ -126,8 +123,7 @@ static inline void golden_check_valences(const char *name, const qc_remesh_resul
 static inline void golden(qc_ctx *ctx, const char *name, const qc_polygon_mesh *soup, double quads,
                           const char *field, const golden_failure *list, qc_remesh_result *result) {
     const golden_failure *expected = golden_expected(list, name);
-    const qc_status status =
-        golden_run(ctx, soup, quads, field, !expected || !expected->hopeless, result);
+    const qc_status status = golden_run(ctx, soup, quads, field, result);
     if (status == QC_OK) {
         golden_check(ctx, name, quads, result);
         if (result->mesh->n_boundary_loops == 0) golden_check_valences(name, result);

@@ -1,7 +1,7 @@
 /* The default pipeline on every procedural surface. */
 #include "tests/golden/golden.h"
 
-static const golden_failure expected_failure[] = {{NULL, NULL, NULL, false}};
+static const golden_failure expected_failure[] = {{NULL, NULL, NULL}};
 
 static qc_polygon_mesh *shape(qc_ctx *ctx, const char *name, int32_t resolution, double noise) {
     qc_shape_options options = QC_SHAPE_OPTIONS_INIT;
