@@ -106,13 +106,16 @@ static double dirichlet_energy(const rounding *r, const qc_complex *f) {
     return energy;
 }
 
-/* Rounds the periods of scale * f to the lattice. */
-static qc_status round_periods(rounding *r, double scale, qc_lattice_result *result) {
-    const int32_t n = r->seams->n_free;
-    for (int32_t j = 0; j < n; j++) {
+static void scale_targets(rounding *r, double scale) {
+    for (int32_t j = 0; j < r->seams->n_free; j++) {
         r->target[2 * j] = scale * creal(r->period[j]);
         r->target[2 * j + 1] = scale * cimag(r->period[j]);
     }
+}
+
+/* Rounds the targets to the lattice. */
+static qc_status round_periods(rounding *r, qc_lattice_result *result) {
+    const int32_t n = r->seams->n_free;
     if (r->P) {
         qc_lattice_options options = QC_LATTICE_OPTIONS_INIT;
         options.start = r->options.start;
@@ -132,18 +135,36 @@ static qc_status round_periods(rounding *r, double scale, qc_lattice_result *res
     return QC_OK;
 }
 
+/* Energy of the harmonic map which direct rounding would add; the trial map serves as space. */
+static qc_status energy_of_direct_rounding(rounding *r, double *energy) {
+    const int32_t n = r->seams->n_free;
+    for (int32_t j = 0; j < n; j++)
+        r->gap[j] = rint(r->target[2 * j]) - r->target[2 * j] +
+                    (rint(r->target[2 * j + 1]) - r->target[2 * j + 1]) * I;
+    memset(r->trial, 0, sizeof *r->trial * 3 * (size_t)r->mesh->n_faces);
+    const qc_status status = qc__periods_add_map(r->ctx, r->periods, r->gap, r->trial);
+    if (status == QC_OK) *energy = dirichlet_energy(r, r->trial);
+    return status;
+}
+
 /* The rounded map at a scale; keeps it when it is nearer to the wanted number of quads. */
 static qc_status try_scale(rounding *r, double scale, double wanted, double *quads) {
     const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
     qc_lattice_result result = {0};
+    const bool weighted = r->P && r->seamless->weight; /* then P measures in another norm           */
     qc_status status = QC_OK;
     memset(r->trial, 0, sizeof *r->trial * (size_t)n_corners);
     if (r->seams->n_free > 0) {
-        status = round_periods(r, scale, &result);
+        double direct = 0;
+        scale_targets(r, scale);
+        if (weighted) status = energy_of_direct_rounding(r, &direct);
+        if (status == QC_OK) status = round_periods(r, &result);
+        if (weighted) result.energy_direct = direct;
+        memset(r->trial, 0, sizeof *r->trial * (size_t)n_corners);
         if (status == QC_OK) status = qc__periods_add_map(r->ctx, r->periods, r->gap, r->trial);
     }
     if (status != QC_OK) return status;
-    if (!r->P || r->seamless->weight) result.energy = dirichlet_energy(r, r->trial);
+    if (!r->P || weighted) result.energy = dirichlet_energy(r, r->trial);
     if (!r->P) result.energy_direct = result.energy;
     for (int64_t c = 0; c < n_corners; c++) {
         r->trial[c].re += scale * r->f[c].re;
