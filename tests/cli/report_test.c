@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sdk/map/closest_point.h"
+#include "sdk/map/report/closest_point.h"
 
 static int setup(void **state) {
     return qc_ctx_create(NULL, (qc_ctx **)state) == QC_OK ? 0 : -1;

@@ -1,7 +1,7 @@
 /* L-BFGS: convex quadratics with and without preconditioner, Rosenbrock's valley, monotone energy.
  */
 #include "tests/unit/map/seamless.h"
-#include "sdk/map/lbfgs.h"
+#include "sdk/map/untangle/lbfgs.h"
 
 enum { N = 60 };
 

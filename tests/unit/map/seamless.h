@@ -13,8 +13,8 @@
 #include <cmocka.h>
 #include <qc/shape.h>
 
-#include "sdk/map/period_matrix.h"
-#include "sdk/map/separation.h"
+#include "sdk/map/periods/period_matrix.h"
+#include "sdk/map/periods/separation.h"
 
 typedef double _Complex complex_t;
 

@@ -1,0 +1,350 @@
+/* Global continuity: rounds the periods of a seamless map and adds the harmonic map which closes the gap
+ * (thesis 4.2.1, 4.2.2, 6.3). When a number of quads is asked for, the map is rescaled and rounded
+ * again until its area meets it: periods scale with the map, the period matrix does not change. */
+#include "sdk/map/periods/period_matrix.h"
+#include "sdk/map/periods/separation.h"
+#include <math.h>
+#include <string.h>
+
+enum {
+    LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly        */
+    DENSITY_ROUNDS = 24,
+    NEWTON_ROUNDS = 5, /* of these; then scales about the best are scanned                         */
+    REACH = 3 /* target edge lengths within which cones are kept apart                            */
+};
+
+static const double slack = 1e-9;    /* deviations nearer than that are equal                          */
+static const double promised = 0.05; /* deviation of the number of quads which is good enough           */
+
+typedef struct rounding {
+    qc_ctx *ctx;
+    const qc_seamless_map *seamless;
+    const qc_mesh *mesh;
+    qc_round_options options;
+    double *cotangent; /* times the weights of the faces                                             */
+    qc__seams *seams;
+    qc__periods *periods;
+    qc__separation *separation;
+    double *P;                /* (2 n)^2, NULL = direct rounding only                               */
+    double _Complex *period;  /* n: real-valued periods in lattice units                            */
+    double _Complex *gap;     /* n: rounded minus scaled periods                                    */
+    double *target, *rounded; /* 2 n                                                                */
+    qc_complex *f;            /* 3 n_faces: the shifted seamless map                                */
+    qc_complex *trial, *best; /* 3 n_faces                                                          */
+    double best_scale, best_miss, harmonic, harmonic_direct;
+    int64_t moves, evaluations;
+    int32_t collisions; /* pairs of cones which could not be kept apart in the last trial          */
+} rounding;
+
+/* --- periods of the seamless map ---------------------------------------------------------------- */
+
+/* Value of a symbol in the map: the position of a cone, or the translation across a segment. */
+static double _Complex measure_symbol(const rounding *r, int32_t symbol, const int32_t *some_edge) {
+    const qc__seams *s = r->seams;
+    const qc_mesh *mesh = r->mesh;
+    if (symbol >= s->n_segments) {
+        const int32_t v = s->cone_vertex[symbol - s->n_segments];
+        int32_t c = mesh->vertex_corner[v];
+        while (s->corner_wedge[c] != s->vertex_wedge[v]) c = qc_corner_ccw(mesh, c);
+        return qc__complex(r->f[c]);
+    }
+    const int32_t left = s->edge_left[some_edge[symbol]], right = mesh->twin[left];
+    const double _Complex from = qc__complex(r->f[qc_next(left)]);
+    return qc__complex(r->f[qc_prev(right)]) - qc__turn(from, s->segment_turn[symbol]);
+}
+
+/* Shifts each component so that its fixed symbol is zero, then reads the free variables. */
+static qc_status read_periods(rounding *r) {
+    const qc__seams *s = r->seams;
+    const qc_mesh *mesh = r->mesh;
+    int32_t *some_edge = QC__NEW(r->ctx, int32_t, s->n_segments);
+    double _Complex *shift = QC__ZERO(r->ctx, double _Complex, mesh->n_components);
+    qc_status status = some_edge && shift ? QC_OK : QC_ERR_NOMEM;
+    if (status == QC_OK) {
+        for (int32_t e = 0; e < mesh->n_edges; e++)
+            if (s->edge_segment[e] >= 0) some_edge[s->edge_segment[e]] = e;
+        for (int32_t c = 0; c < mesh->n_components; c++) {
+            const int32_t fixed = s->fixed_symbol[c];
+            if (fixed >= 0)
+                shift[c] = -measure_symbol(r, fixed, some_edge) / qc__seams_shift(s, fixed);
+        }
+        for (int64_t c = 0; c < 3 * (int64_t)mesh->n_faces; c++) {
+            const double _Complex w = shift[mesh->face_component[c / 3]];
+            r->f[c].re += creal(w);
+            r->f[c].im += cimag(w);
+        }
+        for (int32_t j = 0; j < s->n_free; j++) {
+            const int32_t symbol = s->free_symbol[j];
+            r->period[j] = measure_symbol(r, symbol, some_edge) / s->scale[symbol];
+        }
+    }
+    qc__free(some_edge);
+    qc__free(shift);
+    return status;
+}
+
+/* --- one trial ---------------------------------------------------------------------------------- */
+
+static double signed_area(const qc_complex *f, int32_t n_faces) {
+    double area = 0;
+    for (int32_t t = 0; t < n_faces; t++) {
+        const qc_complex *p = f + 3 * (int64_t)t;
+        area += 0.5 * ((p[1].re - p[0].re) * (p[2].im - p[0].im) -
+                       (p[2].re - p[0].re) * (p[1].im - p[0].im));
+    }
+    return area;
+}
+
+static double dirichlet_energy(const rounding *r, const qc_complex *f) {
+    double energy = 0;
+    for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
+        const qc_complex a = f[qc_next((int32_t)c)], b = f[qc_prev((int32_t)c)];
+        const double du = b.re - a.re, dv = b.im - a.im;
+        const double weight = r->seamless->weight ? r->seamless->weight[c / 3] : 1.0;
+        energy += 0.25 * r->cotangent[c] / weight * (du * du + dv * dv);
+    }
+    return energy;
+}
+
+static void scale_targets(rounding *r, double scale) {
+    for (int32_t j = 0; j < r->seams->n_free; j++) {
+        r->target[2 * j] = scale * creal(r->period[j]);
+        r->target[2 * j + 1] = scale * cimag(r->period[j]);
+    }
+}
+
+/* Rounds the targets to the lattice. */
+static qc_status round_periods(rounding *r, qc_lattice_result *result) {
+    const int32_t n = r->seams->n_free;
+    if (r->P) {
+        qc_lattice_options options = QC_LATTICE_OPTIONS_INIT;
+        options.start = r->options.start;
+        options.radius = r->options.radius;
+        qc_status status =
+            qc_lattice_round(r->ctx, 2 * n, r->P, r->target, &options, r->rounded, result);
+        if (status == QC_OK)
+            status = qc__separate(r->ctx, r->separation, n, r->P, r->target, r->rounded,
+                                  &result->energy, &r->collisions);
+        if (status != QC_OK) return status;
+    } else {
+        for (int32_t j = 0; j < 2 * n; j++) r->rounded[j] = rint(r->target[j]);
+    }
+    for (int32_t j = 0; j < n; j++)
+        r->gap[j] = r->rounded[2 * j] - r->target[2 * j] +
+                    (r->rounded[2 * j + 1] - r->target[2 * j + 1]) * I;
+    return QC_OK;
+}
+
+/* Energy of the harmonic map which direct rounding would add; the trial map serves as space. */
+static qc_status energy_of_direct_rounding(rounding *r, double *energy) {
+    const int32_t n = r->seams->n_free;
+    for (int32_t j = 0; j < n; j++)
+        r->gap[j] = rint(r->target[2 * j]) - r->target[2 * j] +
+                    (rint(r->target[2 * j + 1]) - r->target[2 * j + 1]) * I;
+    memset(r->trial, 0, sizeof *r->trial * 3 * (size_t)r->mesh->n_faces);
+    const qc_status status = qc__periods_add_map(r->ctx, r->periods, r->gap, r->trial);
+    if (status == QC_OK) *energy = dirichlet_energy(r, r->trial);
+    return status;
+}
+
+/* The rounded map at a scale; keeps it when it is nearer to the wanted number of quads. */
+static qc_status try_scale(rounding *r, double scale, double wanted, double *quads) {
+    const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
+    qc_lattice_result result = {0};
+    const bool weighted = r->P && r->seamless->weight; /* then P measures in another norm           */
+    qc_status status = QC_OK;
+    memset(r->trial, 0, sizeof *r->trial * (size_t)n_corners);
+    if (r->seams->n_free > 0) {
+        double direct = 0;
+        scale_targets(r, scale);
+        if (weighted) status = energy_of_direct_rounding(r, &direct);
+        if (status == QC_OK) status = round_periods(r, &result);
+        if (weighted) result.energy_direct = direct;
+        memset(r->trial, 0, sizeof *r->trial * (size_t)n_corners);
+        if (status == QC_OK) status = qc__periods_add_map(r->ctx, r->periods, r->gap, r->trial);
+    }
+    if (status != QC_OK) return status;
+    if (!r->P || weighted) result.energy = dirichlet_energy(r, r->trial);
+    if (!r->P) result.energy_direct = result.energy;
+    for (int64_t c = 0; c < n_corners; c++) {
+        r->trial[c].re += scale * r->f[c].re;
+        r->trial[c].im += scale * r->f[c].im;
+    }
+    r->moves += result.moves;
+    r->evaluations += result.evaluations;
+    *quads = signed_area(r->trial, r->mesh->n_faces);
+    const double miss = wanted > 0 ? fabs(*quads / wanted - 1.0) : 0.0;
+    if (r->best_scale > 0 && miss >= r->best_miss - slack) return QC_OK;
+    qc_complex *swap = r->best;
+    r->best = r->trial;
+    r->trial = swap;
+    r->best_scale = scale;
+    r->best_miss = miss;
+    r->harmonic = result.energy;
+    r->harmonic_direct = result.energy_direct;
+    return QC_OK;
+}
+
+static qc_status meet_density(rounding *r) {
+    const double wanted = r->seamless->sizing->target_quads;
+    double scale = 1.0, middle = 1.0;
+    for (int32_t i = 0; i < DENSITY_ROUNDS; i++) {
+        if (!qc__progress(r->ctx, 0.7 + 0.3 * i / DENSITY_ROUNDS)) return QC_ERR_CANCELLED;
+        double quads = 0;
+        const qc_status status = try_scale(r, scale, wanted, &quads);
+        if (status != QC_OK) return status;
+        if (!(wanted > 0) || r->best_miss <= r->options.tolerance + slack) break;
+        if (i < NEWTON_ROUNDS - 1) {
+            const double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
+            scale *= factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
+        } else { /* a map with few periods jumps: 1, -1, 2, -2, ... percent about the middle          */
+            if (i == NEWTON_ROUNDS - 1) middle = r->best_scale;
+            const int32_t k = i - NEWTON_ROUNDS + 1;
+            scale = middle * (1.0 + 0.01 * (k / 2 + 1) * (k % 2 ? -1 : 1));
+            if (r->best_miss <= promised) break;
+        }
+    }
+    return QC_OK;
+}
+
+/* --- the whole ---------------------------------------------------------------------------------- */
+
+static qc_status prepare(rounding *r) {
+    const qc_seamless_map *seamless = r->seamless;
+    const qc_cover cover = {r->mesh, seamless->matching->m};
+    const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
+    r->cotangent = QC__NEW(r->ctx, double, n_corners);
+    r->f = QC__NEW(r->ctx, qc_complex, n_corners);
+    r->trial = QC__NEW(r->ctx, qc_complex, n_corners);
+    r->best = QC__NEW(r->ctx, qc_complex, n_corners);
+    if (!r->cotangent || !r->f || !r->trial || !r->best) return QC_ERR_NOMEM;
+    memcpy(r->f, seamless->f, sizeof *r->f * (size_t)n_corners);
+    qc_status status =
+        qc_mesh_geometry(r->ctx, r->mesh, NULL, NULL, r->cotangent, NULL, NULL, NULL);
+    for (int64_t c = 0; c < n_corners && status == QC_OK && seamless->weight; c++)
+        r->cotangent[c] *= seamless->weight[c / 3];
+    if (status == QC_OK)
+        status = qc__seams_create(r->ctx, &cover, seamless->cut, seamless->face_turn,
+                                  seamless->matching->index4, &r->seams);
+    if (status == QC_OK) status = qc__seams_solve(r->ctx, r->seams, r->options.lattice);
+    if (status != QC_OK) return status;
+    const int64_t n = r->seams->n_free;
+    r->period = QC__NEW(r->ctx, double _Complex, n);
+    r->gap = QC__NEW(r->ctx, double _Complex, n);
+    r->target = QC__NEW(r->ctx, double, 2 * n);
+    r->rounded = QC__NEW(r->ctx, double, 2 * n);
+    if (!r->period || !r->gap || !r->target || !r->rounded) return QC_ERR_NOMEM;
+    status = read_periods(r);
+    if (status == QC_OK && n > 0)
+        status = qc__periods_create(r->ctx, &cover, r->seams, r->cotangent, seamless->face_turn,
+                                    &r->periods);
+    return status;
+}
+
+static qc_status make_period_matrix(rounding *r) {
+    const int64_t n = r->seams->n_free;
+    if (n == 0) return QC_OK;
+    if (n > LARGEST_PERIOD_MATRIX) {
+        qc__log(r->ctx, QC_LOG_WARNING,
+                "%lld periods are too many for a period matrix; they are rounded directly",
+                (long long)n);
+        return QC_OK;
+    }
+    r->P = QC__NEW(r->ctx, double, 4 * n * n);
+    if (!r->P) return QC_ERR_NOMEM;
+    const qc__range outer = qc__range_begin(r->ctx, NULL, 0.2, 0.7);
+    const qc_status status = qc__period_matrix(r->ctx, r->periods, r->P);
+    qc__range_end(r->ctx, outer);
+    if (status != QC_OK) return status;
+    return qc__separation_create(r->ctx, r->seams, REACH * r->seamless->sizing->edge_length,
+                                 &r->separation);
+}
+
+static qc_status publish(rounding *r, qc_corner_map **out) {
+    const qc_seamless_map *seamless = r->seamless;
+    const int32_t n_faces = r->mesh->n_faces;
+    qc_complex *cross = QC__NEW(r->ctx, qc_complex, n_faces);
+    if (!cross) return QC_ERR_NOMEM;
+    for (int32_t t = 0; t < n_faces; t++)
+        cross[t] = qc_quarter_turn(seamless->matching->field->x[t], -seamless->face_turn[t]);
+    const qc_cover cover = {r->mesh, seamless->matching->m};
+    int8_t *rotation = QC__ZERO(r->ctx, int8_t, r->mesh->n_edges);
+    qc_corner_map *map = NULL;
+    qc_status status = rotation ? QC_OK : QC_ERR_NOMEM;
+    for (int32_t e = 0; e < r->mesh->n_edges && status == QC_OK; e++) {
+        const int32_t h = r->mesh->edge_halfedge[2 * (int64_t)e], g = r->mesh->twin[h];
+        if (g >= 0) /* f'_t = i^{c_t - m - c_s} f'_s + tau */
+            rotation[e] = (int8_t)((seamless->face_turn[g / 3] - qc_cover_turn(&cover, h) -
+                                    seamless->face_turn[h / 3]) & 3);
+    }
+    if (status == QC_OK)
+        status = qc_corner_map_create(r->ctx, r->mesh, &r->best[0].re,
+                                      seamless->sizing->edge_length / r->best_scale, cross, &map);
+    if (status == QC_OK) status = qc_corner_map_set_rotation(r->ctx, map, rotation);
+    if (status == QC_OK) {
+        for (int64_t c = 0; c < 3 * (int64_t)n_faces; c++) {
+            r->trial[c].re = r->best_scale * r->f[c].re;
+            r->trial[c].im = r->best_scale * r->f[c].im;
+        }
+        status = qc_corner_map_set_relaxed(r->ctx, map, &r->trial[0].re);
+    }
+    qc__free(rotation);
+    qc__free(cross);
+    if (status != QC_OK) {
+        qc_object_release(map);
+        return status;
+    }
+    const double square = r->best_scale * r->best_scale;
+    map->field_energy = square * seamless->field_energy;
+    map->curl_energy = square * seamless->curl_energy;
+    map->harmonic_energy = r->harmonic;
+    map->harmonic_energy_direct = r->harmonic_direct;
+    map->iterations = r->moves;
+    map->evaluations = r->evaluations;
+    *out = map;
+    return QC_OK;
+}
+
+/* No quadrangulation of the torus has exactly two irregular vertices of valence 3 and 5: the holonomy of such a flat
+ * metric would be trivial (Izmestiev, Kusner, Rote, Springborn, Sullivan 2013). */
+static qc_status refuse_impossible(const rounding *r) {
+    const qc_mesh *mesh = r->mesh;
+    const qc_matching *matching = r->seamless->matching;
+    if (mesh->n_components != 1 || mesh->n_boundary_edges > 0 || mesh->genus != 1 ||
+        matching->n_singular != 2)
+        return QC_OK;
+    int32_t cone[2] = {-1, -1};
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (matching->index4[v] == 1 || matching->index4[v] == -1)
+            cone[matching->index4[v] < 0] = v;
+    if (cone[0] < 0 || cone[1] < 0) return QC_OK;
+    return qc__fail(r->ctx, QC_ERR_FAILED, cone[0],
+                    "no quad mesh of a torus has exactly one vertex of valence 3 (here %d) and one of "
+                    "valence 5 (here %d); smooth the field or give it more singularities",
+                    (int)cone[0], (int)cone[1]);
+}
+
+qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless, const qc_round_options *options,
+                       qc_corner_map **out) {
+    rounding r = {.ctx = ctx, .seamless = seamless, .mesh = seamless->matching->field->mesh};
+    r.options = (qc_round_options)QC_ROUND_OPTIONS_INIT;
+    if (options)
+        memcpy(&r.options, options,
+               options->struct_size < sizeof r.options ? options->struct_size : sizeof r.options);
+    if (!(r.options.tolerance > 0)) r.options.tolerance = 0.02;
+    qc_status status = refuse_impossible(&r);
+    if (status == QC_OK) status = prepare(&r);
+    if (status == QC_OK) status = make_period_matrix(&r);
+    if (status == QC_OK) status = meet_density(&r);
+    if (status == QC_OK && r.collisions > 0)
+        qc__log(ctx, QC_LOG_WARNING, "%d pairs of cones are too close for this density",
+                (int)r.collisions);
+    if (status == QC_OK) status = publish(&r, out);
+    qc__separation_free(r.separation);
+    qc__periods_free(r.periods);
+    qc__seams_free(r.seams);
+    void *const blocks[] = {r.cotangent, r.f,      r.trial,  r.best,  r.P,
+                            r.period,    r.gap,    r.target, r.rounded};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+    return status;
+}

@@ -1,0 +1,288 @@
+/* Segments, cones and wedges of a cut surface (see seams.h). */
+#include "sdk/map/periods/seams.h"
+#include <string.h>
+
+void qc__seams_free(qc__seams *s) {
+    if (!s) return;
+    void *const blocks[] = {s->edge_segment, s->edge_left,   s->segment_turn,    s->segment_node,
+                            s->cone_vertex,  s->vertex_cone, s->cone_turn,       s->vertex_wedge,
+                            s->corner_wedge, s->wedge_turn,  s->wedge_start,     s->term_symbol,
+                            s->term_turn,    s->node_vertex, s->relation_start,  s->relation_symbol,
+                            s->relation_turn, s->free_symbol, s->scale,          s->row_start,
+                            s->row_free,     s->row_value, s->fixed_symbol};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+    qc__free(s);
+}
+
+/* What the tracing steps share. */
+typedef struct builder {
+    qc_ctx *ctx;
+    const qc_cover *cover;
+    const uint8_t *cut;
+    const int8_t *face_turn;
+    int32_t *degree; /* cut edges at each vertex */
+    qc__seams *s;
+} builder;
+
+/* Rotation of the combed map when halfedge h is crossed: f'_t = i^{c_t - m - c_s} f'_s + tau. */
+static int32_t crossing_turn(const builder *b, int32_t h) {
+    const int32_t g = b->cover->mesh->twin[h];
+    return (b->face_turn[g / 3] - qc_cover_turn(b->cover, h) - b->face_turn[h / 3]) & 3;
+}
+
+static bool is_cut(const builder *b, int32_t h) {
+    return b->cut[b->cover->mesh->halfedge_edge[h]] && b->cover->mesh->twin[h] >= 0;
+}
+
+static bool is_node(const builder *b, int32_t v) {
+    return b->degree[v] > 0 && (b->degree[v] != 2 || b->s->vertex_cone[v] >= 0 ||
+                                qc_vertex_on_boundary(b->cover->mesh, v));
+}
+
+static qc_status find_cones(builder *b, const int32_t *index4) {
+    const qc_mesh *mesh = b->cover->mesh;
+    qc__seams *s = b->s;
+    int8_t *shift = QC__NEW(b->ctx, int8_t, mesh->n_vertices);
+    qc_status status = shift ? qc_cover_shifts(b->ctx, b->cover, shift) : QC_ERR_NOMEM;
+    s->vertex_cone = QC__NEW(b->ctx, int32_t, mesh->n_vertices);
+    if (status == QC_OK && !s->vertex_cone) status = QC_ERR_NOMEM;
+    if (status == QC_OK) {
+        for (int32_t v = 0; v < mesh->n_vertices; v++) {
+            const bool cone = !qc_vertex_on_boundary(mesh, v) && (shift[v] != 0 || index4[v] != 0);
+            s->vertex_cone[v] = cone ? s->n_cones++ : -1;
+        }
+        s->cone_vertex = QC__NEW(b->ctx, int32_t, s->n_cones);
+        s->cone_turn = QC__ZERO(b->ctx, int8_t, s->n_cones);
+        if (!s->cone_vertex || !s->cone_turn) status = QC_ERR_NOMEM;
+    }
+    if (status == QC_OK)
+        for (int32_t v = 0; v < mesh->n_vertices; v++)
+            if (s->vertex_cone[v] >= 0) s->cone_vertex[s->vertex_cone[v]] = v;
+    qc__free(shift);
+    return status;
+}
+
+static qc_status count_degrees(builder *b) {
+    const qc_mesh *mesh = b->cover->mesh;
+    b->degree = QC__ZERO(b->ctx, int32_t, mesh->n_vertices);
+    if (!b->degree) return QC_ERR_NOMEM;
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        if (is_cut(b, mesh->edge_halfedge[2 * e])) {
+            b->degree[mesh->edge_vertex[2 * e]]++;
+            b->degree[mesh->edge_vertex[2 * e + 1]]++;
+        }
+    return QC_OK;
+}
+
+/* The cut halfedge leaving the end of h along the graph, at a vertex of degree 2: walk about the
+ * vertex from the left side of h until the next cut edge. */
+static int32_t next_on_segment(const builder *b, int32_t h) {
+    const qc_mesh *mesh = b->cover->mesh;
+    int32_t out = qc_next(h); /* leaves the end of h, in the face on the left of h */
+    while (!is_cut(b, out)) out = qc_next(mesh->twin[out]);
+    return out;
+}
+
+/* Traces the segment which starts with halfedge h; its left faces lie on the left of h. */
+static void trace_segment(builder *b, int32_t h, int32_t k) {
+    const qc_mesh *mesh = b->cover->mesh;
+    qc__seams *s = b->s;
+    const int32_t first = h;
+    s->segment_node[2 * k] = qc_halfedge_start(mesh, h);
+    s->segment_turn[k] = (int8_t)crossing_turn(b, h);
+    for (;;) {
+        s->edge_segment[mesh->halfedge_edge[h]] = k;
+        s->edge_left[mesh->halfedge_edge[h]] = h;
+        const int32_t v = qc_halfedge_end(mesh, h);
+        s->segment_node[2 * k + 1] = v;
+        if (is_node(b, v)) return;
+        h = next_on_segment(b, h);
+        if (h == first) return;
+    }
+}
+
+static qc_status trace_segments(builder *b) {
+    const qc_mesh *mesh = b->cover->mesh;
+    qc__seams *s = b->s;
+    int64_t turn_capacity = 0, node_capacity = 0;
+    s->edge_segment = QC__NEW(b->ctx, int32_t, mesh->n_edges);
+    s->edge_left = QC__NEW(b->ctx, int32_t, mesh->n_edges);
+    if (!s->edge_segment || !s->edge_left) return QC_ERR_NOMEM;
+    memset(s->edge_segment, -1, sizeof(int32_t) * (size_t)mesh->n_edges);
+    memset(s->edge_left, -1, sizeof(int32_t) * (size_t)mesh->n_edges);
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        for (int32_t side = 0; side < 2; side++) {
+            const int32_t h = mesh->edge_halfedge[2 * e + side];
+            if (h < 0 || !is_cut(b, h) || s->edge_segment[e] >= 0) continue;
+            if (!is_node(b, qc_halfedge_start(mesh, h))) continue;
+            const int32_t k = s->n_segments;
+            if (!qc__reserve(b->ctx, (void **)&s->segment_turn, &turn_capacity, k + 1,
+                             sizeof(int8_t)) ||
+                !qc__reserve(b->ctx, (void **)&s->segment_node, &node_capacity, 2 * k + 2,
+                             sizeof(int32_t)))
+                return QC_ERR_NOMEM;
+            trace_segment(b, h, k);
+            s->n_segments++;
+        }
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        if (is_cut(b, mesh->edge_halfedge[2 * e]) && s->edge_segment[e] < 0)
+            return qc__fail(b->ctx, QC_ERR_FAILED, e, "edge %d lies on a cut cycle without a node",
+                            (int)e);
+    return QC_OK;
+}
+
+/* --- wedges ----------------------------------------------------------------------------------- */
+
+static bool walk_reserve(qc_ctx *ctx, qc__walk *w) {
+    if (w->n < w->capacity) return true;
+    const int32_t capacity = w->capacity < 16 ? 16 : 2 * w->capacity;
+    int32_t *symbol = qc__realloc(ctx, w->symbol, (size_t)capacity, sizeof *symbol);
+    if (!symbol) return false;
+    w->symbol = symbol;
+    int8_t *turn = qc__realloc(ctx, w->symbol_turn, (size_t)capacity, sizeof *turn);
+    if (!turn) return false;
+    w->symbol_turn = turn;
+    w->capacity = capacity;
+    return true;
+}
+
+void qc__walk_free(qc__walk *w) {
+    qc__free(w->symbol);
+    qc__free(w->symbol_turn);
+    *w = (qc__walk){0};
+}
+
+/* f -> i^rho f + tau from left to right, i^-rho (f - tau) the other way. */
+bool qc__walk_cross(qc_ctx *ctx, const qc__seams *s, qc__walk *w, int32_t h) {
+    const int32_t e = s->mesh->halfedge_edge[h], k = s->edge_segment[e];
+    if (k < 0) return true;
+    const bool from_left = s->edge_left[e] == h;
+    const int32_t turn = from_left ? s->segment_turn[k] : -s->segment_turn[k];
+    if (!walk_reserve(ctx, w)) return false;
+    w->turn = (w->turn + turn) & 3;
+    for (int32_t j = 0; j < w->n; j++) w->symbol_turn[j] = (int8_t)((w->symbol_turn[j] + turn) & 3);
+    w->symbol[w->n] = k;
+    w->symbol_turn[w->n++] = (int8_t)(from_left ? 0 : (turn + 2) & 3);
+    return true;
+}
+
+static bool append_terms(qc_ctx *ctx, const qc__walk *w, int32_t **symbol, int8_t **turn, int64_t *n,
+                         int64_t *capacity) {
+    if (*n + w->n > *capacity) {
+        int64_t symbols = *capacity, turns = *capacity;
+        if (!qc__reserve(ctx, (void **)symbol, &symbols, *n + w->n, sizeof **symbol)) return false;
+        if (!qc__reserve(ctx, (void **)turn, &turns, symbols, sizeof **turn)) return false;
+        *capacity = symbols < turns ? symbols : turns;
+    }
+    if (w->n > 0) {
+        memcpy(*symbol + *n, w->symbol, sizeof **symbol * (size_t)w->n);
+        memcpy(*turn + *n, w->symbol_turn, sizeof **turn * (size_t)w->n);
+    }
+    *n += w->n;
+    return true;
+}
+
+/* First corner of the fan of v which follows a cut edge or the boundary. */
+static int32_t first_corner(const builder *b, int32_t v) {
+    const qc_mesh *mesh = b->cover->mesh;
+    const int32_t start = mesh->vertex_corner[v];
+    if (qc_vertex_on_boundary(mesh, v) || b->degree[v] == 0) return start;
+    int32_t c = start;
+    while (!is_cut(b, qc_prev(c))) c = qc_corner_ccw(mesh, c);
+    return c;
+}
+
+/* Wedges of vertex v with their terms; leaves the walk closed once around (interior vertices). */
+static bool walk_vertex(builder *b, int32_t v, qc__walk *w) {
+    const qc_mesh *mesh = b->cover->mesh;
+    qc__seams *s = b->s;
+    const int32_t start = first_corner(b, v), cone = s->vertex_cone[v];
+    w->turn = w->n = 0;
+    int32_t c = start;
+    bool fresh = true;
+    do {
+        if (fresh) {
+            const int32_t at = s->n_wedges++;
+            s->wedge_turn[at] = (int8_t)w->turn;
+            s->wedge_start[at] = s->n_terms;
+            if (!append_terms(b->ctx, w, &s->term_symbol, &s->term_turn, &s->n_terms,
+                              &s->term_capacity))
+                return false;
+            if (cone >= 0) { /* F_v = p_v */
+                int32_t symbol = s->n_segments + cone;
+                int8_t turn = (int8_t)w->turn;
+                const qc__walk pole = {0, 1, 1, &symbol, &turn};
+                if (!append_terms(b->ctx, &pole, &s->term_symbol, &s->term_turn, &s->n_terms,
+                                  &s->term_capacity))
+                    return false;
+            }
+        }
+        s->corner_wedge[c] = s->n_wedges - 1;
+        const int32_t h = qc_next(c); /* the edge crossed counter-clockwise */
+        fresh = is_cut(b, h);
+        if (fresh && !qc__walk_cross(b->ctx, s, w, h)) return false;
+        c = qc_corner_ccw(mesh, c);
+    } while (c >= 0 && c != start);
+    return true;
+}
+
+static bool record_relation(builder *b, int32_t v, const qc__walk *w) {
+    qc__seams *s = b->s;
+    s->node_vertex[s->n_nodes] = v;
+    s->relation_start[s->n_nodes++] = s->n_relation_terms;
+    return append_terms(b->ctx, w, &s->relation_symbol, &s->relation_turn, &s->n_relation_terms,
+                        &s->relation_capacity);
+}
+
+static qc_status make_wedges(builder *b) {
+    const qc_mesh *mesh = b->cover->mesh;
+    qc__seams *s = b->s;
+    int64_t most = mesh->n_vertices;
+    int32_t nodes = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        most += b->degree[v];
+        nodes += is_node(b, v);
+    }
+    s->vertex_wedge = QC__NEW(b->ctx, int32_t, mesh->n_vertices + 1);
+    s->corner_wedge = QC__NEW(b->ctx, int32_t, 3 * (int64_t)mesh->n_faces);
+    s->wedge_turn = QC__NEW(b->ctx, int8_t, most);
+    s->wedge_start = QC__NEW(b->ctx, int64_t, most + 1);
+    s->node_vertex = QC__NEW(b->ctx, int32_t, nodes);
+    s->relation_start = QC__NEW(b->ctx, int64_t, nodes + 1);
+    if (!s->vertex_wedge || !s->corner_wedge || !s->wedge_turn || !s->wedge_start ||
+        !s->node_vertex || !s->relation_start)
+        return QC_ERR_NOMEM;
+    qc__walk w = {0};
+    qc_status status = QC_OK;
+    for (int32_t v = 0; v < mesh->n_vertices && status == QC_OK; v++) {
+        s->vertex_wedge[v] = s->n_wedges;
+        if (!walk_vertex(b, v, &w)) status = QC_ERR_NOMEM;
+        if (status != QC_OK || qc_vertex_on_boundary(mesh, v)) continue;
+        if (s->vertex_cone[v] >= 0) s->cone_turn[s->vertex_cone[v]] = (int8_t)(w.turn & 3);
+        if (is_node(b, v) && !record_relation(b, v, &w)) status = QC_ERR_NOMEM;
+    }
+    s->vertex_wedge[mesh->n_vertices] = s->n_wedges;
+    s->wedge_start[s->n_wedges] = s->n_terms;
+    s->relation_start[s->n_nodes] = s->n_relation_terms;
+    qc__walk_free(&w);
+    return status;
+}
+
+qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cut,
+                           const int8_t *face_turn, const int32_t *index4, qc__seams **out) {
+    qc__seams *s = QC__ZERO(ctx, qc__seams, 1);
+    if (!s) return QC_ERR_NOMEM;
+    s->mesh = cover->mesh;
+    builder b = {ctx, cover, cut, face_turn, NULL, s};
+    qc_status status = find_cones(&b, index4);
+    if (status == QC_OK) status = count_degrees(&b);
+    if (status == QC_OK) status = trace_segments(&b);
+    if (status == QC_OK) status = make_wedges(&b);
+    qc__free(b.degree);
+    if (status != QC_OK) {
+        qc__seams_free(s);
+        return status;
+    }
+    *out = s;
+    return QC_OK;
+}

@@ -1,0 +1,195 @@
+/* Local search which moves rounded periods until no two neighbouring cones collide (see separation.h). */
+#include "sdk/map/periods/separation.h"
+#include <math.h>
+#include <string.h>
+
+typedef struct step { /* z_variable += i^unit */
+    int32_t variable, unit;
+} step;
+
+typedef struct search {
+    const qc__separation *s;
+    int32_t n; /* complex variables */
+    const double *P;
+    double *z, *slope;            /* slope = P (z - t), 2 n */
+    double _Complex *now, *wanted; /* forms of the pairs for z and for t */
+    int64_t *pair_start;          /* pairs and coefficients by variable */
+    int32_t *pair;
+    double _Complex *coefficient;
+    double energy;
+} search;
+
+static double _Complex unit_of(int32_t k) { return qc__turn(1.0, k); }
+
+static bool collides(const search *q, int32_t pair, double _Complex now) {
+    const double _Complex w = q->wanted[pair];
+    if (creal(now) * creal(now) + cimag(now) * cimag(now) < 0.25) return true;
+    return creal(now) * creal(w) + cimag(now) * cimag(w) < 0;
+}
+
+static int32_t index_of(step a) { return 2 * a.variable + (a.unit & 1); }
+static double sign_of(step a) { return a.unit & 2 ? -1.0 : 1.0; }
+
+static double energy_change(const search *q, step a) {
+    const int64_t i = index_of(a);
+    return 0.5 * q->P[i + i * 2 * q->n] + sign_of(a) * q->slope[i];
+}
+
+static int32_t collision_change(const search *q, step a) {
+    int32_t change = 0;
+    for (int64_t i = q->pair_start[a.variable]; i < q->pair_start[a.variable + 1]; i++) {
+        const int32_t p = q->pair[i];
+        change += collides(q, p, q->now[p] + q->coefficient[i] * unit_of(a.unit)) -
+                  collides(q, p, q->now[p]);
+    }
+    return change;
+}
+
+static void apply(search *q, step a) {
+    const int64_t i = index_of(a), size = 2 * (int64_t)q->n;
+    const double sign = sign_of(a);
+    q->energy += energy_change(q, a);
+    q->z[i] += sign;
+    for (int64_t k = 0; k < size; k++) q->slope[k] += sign * q->P[k + i * size];
+    for (int64_t k = q->pair_start[a.variable]; k < q->pair_start[a.variable + 1]; k++)
+        q->now[q->pair[k]] += q->coefficient[k] * unit_of(a.unit);
+}
+
+static step opposite(step a) { return (step){a.variable, (a.unit + 2) & 3}; }
+
+/* Cheapest single step on a variable of the pair which lowers the number of collisions. */
+static bool best_step(const search *q, int32_t pair, step *best) {
+    double least = INFINITY;
+    for (int64_t i = q->s->start[pair]; i < q->s->start[pair + 1]; i++)
+        for (int32_t unit = 0; unit < 4; unit++) {
+            const step a = {q->s->variable[i], unit};
+            const double change = energy_change(q, a);
+            if (change < least && collision_change(q, a) < 0) {
+                least = change;
+                *best = a;
+            }
+        }
+    return least < INFINITY;
+}
+
+/* Cheapest two steps: the first on a variable of the pair, the second on one of any pair that the first
+ * leaves colliding. */
+static bool best_two_steps(search *q, int32_t pair, step *first, step *second) {
+    double least = INFINITY;
+    for (int64_t i = q->s->start[pair]; i < q->s->start[pair + 1]; i++)
+        for (int32_t unit = 0; unit < 4; unit++) {
+            const step a = {q->s->variable[i], unit};
+            const double change = energy_change(q, a);
+            const int32_t collisions = collision_change(q, a);
+            if (change > least) continue;
+            apply(q, a);
+            for (int64_t k = q->pair_start[a.variable]; k < q->pair_start[a.variable + 1]; k++) {
+                step b;
+                if (!collides(q, q->pair[k], q->now[q->pair[k]])) continue;
+                if (!best_step(q, q->pair[k], &b)) continue;
+                if (collisions + collision_change(q, b) >= 0) continue;
+                const double both = change + energy_change(q, b);
+                if (both >= least) continue;
+                least = both;
+                *first = a;
+                *second = b;
+            }
+            apply(q, opposite(a));
+        }
+    return least < INFINITY;
+}
+
+static int32_t count_collisions(const search *q) {
+    int32_t n = 0;
+    for (int32_t p = 0; p < q->s->n; p++) n += collides(q, p, q->now[p]);
+    return n;
+}
+
+/* Every accepted change lowers the number of collisions, so this ends. */
+static qc_status remove_collisions(qc_ctx *ctx, search *q) {
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int32_t p = 0; p < q->s->n; p++) {
+            if (!qc__progress(ctx, 0.0)) return QC_ERR_CANCELLED;
+            step a, b;
+            if (!collides(q, p, q->now[p])) continue;
+            if (best_step(q, p, &a)) {
+                apply(q, a);
+                changed = true;
+            } else if (best_two_steps(q, p, &a, &b)) {
+                apply(q, a);
+                apply(q, b);
+                changed = true;
+            }
+        }
+    }
+    return QC_OK;
+}
+
+/* Then the energy falls again as far as single steps without new collisions let it. */
+static qc_status descend(qc_ctx *ctx, search *q) {
+    const double enough = 1e-9 * (q->energy > 0 ? q->energy : 1.0);
+    for (bool changed = true; changed;) {
+        changed = false;
+        if (!qc__progress(ctx, 0.5)) return QC_ERR_CANCELLED;
+        for (int32_t j = 0; j < q->n; j++)
+            for (int32_t unit = 0; unit < 4; unit++) {
+                const step a = {j, unit};
+                if (energy_change(q, a) >= -enough || collision_change(q, a) > 0) continue;
+                apply(q, a);
+                changed = true;
+            }
+    }
+    return QC_OK;
+}
+
+static qc_status prepare(qc_ctx *ctx, search *q, const double *t) {
+    const qc__separation *s = q->s;
+    const int64_t size = 2 * (int64_t)q->n, terms = s->start[s->n];
+    q->slope = QC__ZERO(ctx, double, size);
+    q->now = QC__ZERO(ctx, double _Complex, s->n);
+    q->wanted = QC__ZERO(ctx, double _Complex, s->n);
+    q->pair_start = QC__ZERO(ctx, int64_t, q->n + 2);
+    q->pair = QC__NEW(ctx, int32_t, terms);
+    q->coefficient = QC__NEW(ctx, double _Complex, terms);
+    if (!q->slope || !q->now || !q->wanted || !q->pair_start || !q->pair || !q->coefficient)
+        return QC_ERR_NOMEM;
+    for (int64_t j = 0; j < size; j++)
+        for (int64_t i = 0; i < size; i++) q->slope[i] += q->P[i + j * size] * (q->z[j] - t[j]);
+    for (int32_t p = 0; p < s->n; p++)
+        for (int64_t i = s->start[p]; i < s->start[p + 1]; i++) {
+            const int64_t j = s->variable[i];
+            q->now[p] += s->value[i] * (q->z[2 * j] + q->z[2 * j + 1] * I);
+            q->wanted[p] += s->value[i] * (t[2 * j] + t[2 * j + 1] * I);
+        }
+    for (int64_t i = 0; i < terms; i++) q->pair_start[s->variable[i] + 2]++;
+    for (int32_t j = 0; j < q->n; j++) q->pair_start[j + 2] += q->pair_start[j + 1];
+    for (int32_t p = 0; p < s->n; p++)
+        for (int64_t i = s->start[p]; i < s->start[p + 1]; i++) {
+            const int64_t at = q->pair_start[s->variable[i] + 1]++;
+            q->pair[at] = p;
+            q->coefficient[at] = s->value[i];
+        }
+    return QC_OK;
+}
+
+qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_free,
+                       const double *P, const double *t, double *z, double *energy, int32_t *left) {
+    search q = {.s = separation, .n = n_free, .P = P, .z = z, .energy = *energy};
+    qc_status status = prepare(ctx, &q, t);
+    if (status == QC_OK && count_collisions(&q) > 0) {
+        status = remove_collisions(ctx, &q);
+        if (status == QC_OK) status = descend(ctx, &q);
+    }
+    if (status == QC_OK) {
+        *energy = q.energy;
+        *left = count_collisions(&q);
+    }
+    qc__free(q.slope);
+    qc__free(q.now);
+    qc__free(q.wanted);
+    qc__free(q.pair_start);
+    qc__free(q.pair);
+    qc__free(q.coefficient);
+    return status;
+}
