@@ -1,6 +1,6 @@
 /* Stage qc.extract: quads from an integer-seamless map, through the exact grid map. */
 #include <qc/map.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 typedef struct extract_params {
     double tolerance;

@@ -1,6 +1,6 @@
 /* Stage qc.features: crease and boundary edges of a mesh. */
 #include <qc/mesh.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 #define PI 3.14159265358979323846
 

@@ -2,7 +2,7 @@
  * (thesis 5.1), and soft alignment to features. */
 #include "sdk/base/internal.h"
 #include <qc/field.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* Stage qc.field.import: cross field from a .rawfield or .rosy file. */
 #include <qc/field.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 typedef struct params {
     const char *file;

@@ -1,7 +1,7 @@
 /* Stage qc.field.smooth: thesis 5.2. */
 #include "sdk/base/internal.h"
 #include <qc/field.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 #include <math.h>
 #include <string.h>

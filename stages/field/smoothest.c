@@ -1,7 +1,7 @@
 /* Stage qc.field.smoothest: eigenvector of the connection Laplacian, or its aligned version. */
 #include "sdk/base/internal.h"
 #include <qc/field.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 #include <math.h>
 

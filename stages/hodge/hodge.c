@@ -1,6 +1,6 @@
 /* Stage qc.hodge: curl removal on the covering, cut graph, integration (thesis 4.1). */
 #include <qc/map.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 static const qc_port in[] = {
     {"matching", QC_TYPE_MATCHING, 0, "cross field with its matching"},

@@ -1,6 +1,6 @@
 /* Stage qc.matching: the straightest matching of a cross field, its singularities. */
 #include <qc/field.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* Stage qc.measure: the figures of a result (thesis Table 7.1; distances to the input). */
 #include <qc/map.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 static qc_status run(const qc_run *r, const void *params) {
     (void)params;

@@ -1,6 +1,6 @@
 /* Stage qc.repair: polygon soup in, oriented manifold triangle mesh and report out. */
 #include <qc/mesh.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 #include <stdio.h>
 

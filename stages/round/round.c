@@ -1,6 +1,6 @@
 /* Stage qc.round: global continuity by rounding the periods (thesis 4.2, 6.3). */
 #include <qc/map.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 typedef struct params {
     int32_t lattice, start;

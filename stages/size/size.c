@@ -1,6 +1,6 @@
 /* Stage qc.size: target edge length of the quads. */
 #include <qc/field.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 
 #include <math.h>
 

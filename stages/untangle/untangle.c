@@ -1,6 +1,6 @@
 /* Stage qc.untangle: removes fold-overs, keeping transitions and lattice points (ROBUST 6). */
 #include <qc/map.h>
-#include <qc/stage.h>
+#include <qc/stages.h>
 #include <stdio.h>
 
 typedef struct params {

@@ -14,5 +14,6 @@
 #include <qc/shape.h>
 #include <qc/sparse.h>
 #include <qc/stage.h>
+#include <qc/stages.h>
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "sdk/map/grid/internal.h"
 
-/* --- lattice vertices (extract_lattice.c) -------------------------------------------------------
+/* --- lattice vertices (lattice.c) -------------------------------------------------------
  */
 
 /* Integer points of the map, each located once as mesh vertex, edge or face. Numbers: first those
@@ -32,7 +32,7 @@ qc__place qc__locate(const qc_grid_map *g, int32_t t, qc__point p, int *k);
 /* Number of the lattice vertex at p (grid units, chart of t), -1 = outside or none. */
 int32_t qc__lattice_find(const qc__lattice *lattice, int32_t t, qc__point p);
 
-/* --- ports (extract_ports.c)
+/* --- ports (ports.c)
  * ---------------------------------------------------------------------- */
 
 /* Directions in which isolines leave the lattice vertices, counter-clockwise at each. */
@@ -56,13 +56,13 @@ static inline qc__point qc__port_point(const qc__ports *p, int32_t port) {
     return (qc__point){p->uv[2 * (int64_t)port] * unit, p->uv[2 * (int64_t)port + 1] * unit};
 }
 
-/* Fills in mate by exact tracing (extract_trace.c). On a mesh without boundary an unmatched port is
+/* Fills in mate by exact tracing (trace.c). On a mesh without boundary an unmatched port is
  * FAILED. */
 qc_status qc__ports_trace(qc_ctx *ctx, qc__ports *ports);
 /* The boundary halfedge at which the isoline of an unmatched port leaves the surface, -1 = none. */
 int32_t qc__port_exit(const qc__ports *ports, int32_t port);
 
-/* --- pieces of cells (extract_pieces.c) --------------------------------------------------------- */
+/* --- pieces of cells (pieces.c) --------------------------------------------------------- */
 
 /* A face as seen from a piece: the square has its first corner at `at` and its first side in
  * direction d of the face's chart. */
@@ -111,7 +111,7 @@ static inline qc__point qc__in_square(const qc__visit *v, qc__point p) {
 bool qc__meets_square(qc__point a, qc__point b, qc__point o, int64_t unit);
 bool qc__triangle_meets_square(const qc__point c[3], qc__point o, int64_t unit);
 
-/* --- cells (extract_cells.c, extract_open.c) ---------------------------------------------------- */
+/* --- cells (cells.c, open.c) ---------------------------------------------------- */
 
 /* Unit squares of the grid: first the complete ones, bounded by four ports and wholly in the
  * surface; then the open ones, which the boundary of the surface cuts (piece i is cell
@@ -143,7 +143,7 @@ void qc__cells_free(qc__cells *cells);
 qc_status qc__open_pieces(qc_ctx *ctx, const qc__ports *ports, qc__pieces *out);
 qc_status qc__open_cells(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells);
 
-/* --- choice of the open cells (extract_keep.c, extract_choice.c, extract_gaps.c) ----------------- */
+/* --- choice of the open cells (keep.c, choice.c, gaps.c) ----------------- */
 
 /* On meshes with boundary: which open cells are kept and how cells are joined. FAILED when the kept
  * cells are no copy of each component. */
@@ -167,7 +167,7 @@ qc_status qc__loops_gaps(qc_ctx *ctx, const qc__ports *ports, const qc__cells *c
 /* Sets keep and across from the limits of the loops. set: 4 n, corners joined (sets). */
 qc_status qc__choose(qc_ctx *ctx, qc__cells *cells, const qc__loops *loops, int32_t *set);
 
-/* --- result (extract_vertices.c, extract_place.c, extract_quads.c) ------------------------------- */
+/* --- result (vertices.c, place.c, quads.c) ------------------------------- */
 
 /* Output vertex of each corner of the kept cells: corners which cells share across their sides.
  * vertex: 4 n, -1 = not kept. *n_lattice of the *n_vertices, the first ones, are lattice vertices. */

@@ -89,12 +89,12 @@ typedef struct qc__grid_build {
     int32_t *translation;
 } qc__grid_build;
 
-/* rotation and translation of every edge (grid_seams.c). */
+/* rotation and translation of every edge (seams.c). */
 qc_status qc__grid_seams(qc__grid_build *b);
-/* grid_uv and holonomy, from one representative a vertex (grid_vertices.c). */
+/* grid_uv and holonomy, from one representative a vertex (vertices.c). */
 qc_status qc__grid_vertices(qc__grid_build *b);
 /* Undoes orientations which rounding spoiled: moves regular interior vertices by a few grid units
- * (grid_repair.c); coordinates which are integers stay. */
+ * (repair.c); coordinates which are integers stay. */
 qc_status qc__grid_repair(qc_ctx *ctx, qc_grid_map *g, int32_t *uv);
 /* Writes all corners of vertex v from the value p at its first corner. */
 void qc__grid_spread(const qc_grid_map *g, int32_t v, qc__point p, int32_t *uv);

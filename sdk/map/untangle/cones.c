@@ -1,4 +1,4 @@
-/* Winding of cones and layout of their stars (see untangle_cones.h). */
+/* Winding of cones and layout of their stars (see cones.h). */
 #include "sdk/map/untangle/cones.h"
 #include <math.h>
 

@@ -1,4 +1,4 @@
-/* Energy, gradient and target shapes for untangling (see untangle_energy.h). */
+/* Energy, gradient and target shapes for untangling (see energy.h). */
 #include "sdk/map/untangle/energy.h"
 #include <math.h>
 #include <string.h>

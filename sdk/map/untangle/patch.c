@@ -1,4 +1,4 @@
-/* Minimises the untangling energy of one patch (see untangle_energy.h): L-BFGS preconditioned by the Laplacian of
+/* Minimises the untangling energy of one patch (see energy.h): L-BFGS preconditioned by the Laplacian of
  * the patch, in rounds of falling regularisation. */
 #include "sdk/map/untangle/lbfgs.h"
 #include "sdk/map/untangle/energy.h"
