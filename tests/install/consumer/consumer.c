@@ -12,6 +12,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "%s\n", ctx ? qc_ctx_error(ctx)->text : "no context");
         return 1;
     }
+    if (registry && qc_stage_hodge.n_out != 1) return 2; /* the tables are exported */
     printf("%s\n", qc_version());
     for (uint32_t i = 0; i < qc_registry_count(registry); i++)
         printf("%s %s\n", qc_registry_stage(registry, i)->id,
