@@ -17,14 +17,17 @@ setup:
 demo: build
 	@sh bindings/cli/demo.sh build/bin/quadcover "$(MESH)" "$(QUADS)"
 
-# clang without warnings, unit tests under ASan and UBSan; then all tests of the release
-# build, whose summary is the last thing printed.
-check: build
+# Formatting; clang without warnings; unit tests under ASan and UBSan, those of everything parallel under
+# TSan; then all tests of the release build, whose summary is the last thing printed.
+check: build check-format
 	cmake --preset clang >/dev/null
 	cmake --build build-clang -j $(JOBS)
 	cmake --preset asan-ubsan >/dev/null
 	cmake --build build-asan-ubsan -j $(JOBS)
 	cd build-asan-ubsan && ctest -R '^unit/' -j $(JOBS) --output-on-failure
+	cmake --preset tsan >/dev/null
+	cmake --build build-tsan -j $(JOBS)
+	cd build-tsan && ctest -R '^unit/(base|sparse|pipeline|field)' -j $(JOBS) --output-on-failure
 	cd build && ctest -j $(JOBS) --output-on-failure
 
 # Formatting of all tracked sources by .clang-format.
