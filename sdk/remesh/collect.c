@@ -5,9 +5,10 @@
 
 qc_status qc__collection_create(qc_ctx *ctx, int32_t n, qc__collection *out) {
     qc__collection all = {QC__ZERO(ctx, qc_polygon_mesh *, n), QC__ZERO(ctx, qc_polygon_mesh *, n),
-                          QC__ZERO(ctx, qc_face_field *, n), QC__ZERO(ctx, qc_report *, n)};
+                          QC__ZERO(ctx, qc_mesh *, n), QC__ZERO(ctx, qc_face_field *, n),
+                          QC__ZERO(ctx, qc_report *, n)};
     *out = all;
-    if (all.quads && all.uv && all.field && all.report) return QC_OK;
+    if (all.quads && all.uv && all.mesh && all.field && all.report) return QC_OK;
     qc__collection_clear(out, 0);
     return QC_ERR_NOMEM;
 }
@@ -16,14 +17,16 @@ void qc__collection_clear(qc__collection *all, int32_t n) {
     for (int32_t c = 0; c < n; c++) {
         qc_object_release(all->quads[c]);
         qc_object_release(all->uv[c]);
+        qc_object_release(all->mesh[c]);
         qc_object_release(all->field[c]);
         qc_object_release(all->report[c]);
     }
     qc__free(all->quads);
     qc__free(all->uv);
+    qc__free(all->mesh);
     qc__free(all->field);
     qc__free(all->report);
-    *all = (qc__collection){NULL, NULL, NULL, NULL};
+    *all = (qc__collection){NULL, NULL, NULL, NULL, NULL};
 }
 
 /* The latest object of a type which the run itself made, with a reference; NULL when there is none.
@@ -33,39 +36,43 @@ static void *made(const qc_bag *before, const qc_bag *bag, const char *type) {
     return object == qc_bag_latest(before, type) ? NULL : qc_object_retain(object);
 }
 
-qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_bag *before,
-                             const qc_bag *bag) {
+/* The latest field on the component itself: a matching on a refined mesh has a field of its own. */
+static qc_face_field *field_on(const qc_mesh *mesh, const qc_bag *bag) {
+    for (uint32_t i = qc_bag_count(bag); i-- > 0;) {
+        const qc_object *object = qc_bag_get(bag, qc_bag_name(bag, i));
+        if (strcmp(object->type, QC_TYPE_FACE_FIELD) != 0) continue;
+        const qc_face_field *field = (const qc_face_field *)object;
+        if (field->mesh == mesh) return qc_object_retain(field);
+    }
+    return NULL;
+}
+
+qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_mesh *mesh,
+                             const qc_bag *before, const qc_bag *bag) {
     const qc_corner_map *map = qc_bag_latest(bag, QC_TYPE_CORNER_MAP);
+    all->mesh[c] = qc_object_retain(map ? map->mesh : mesh);
     all->quads[c] = made(before, bag, QC_TYPE_POLYGON_MESH);
-    all->field[c] = made(before, bag, QC_TYPE_FACE_FIELD);
+    all->field[c] = field_on(mesh, bag);
     all->report[c] = made(before, bag, QC_TYPE_REPORT);
     return map ? qc_corner_map_to_polygons(ctx, map, &all->uv[c]) : QC_OK;
 }
 
-/* Union of the parts which are there, in order; NULL when there is none. With source_face = true
- * the source faces become those of the input. */
-static qc_status merge_polygons(qc_ctx *ctx, qc_polygon_mesh *const *part, const qc__parts *parts,
-                                bool source_face, qc_polygon_mesh **out) {
-    const qc_polygon_mesh **list = QC__NEW(ctx, const qc_polygon_mesh *, parts->n);
-    const int32_t **map = QC__ZERO(ctx, const int32_t *, parts->n);
-    int32_t *source = QC__NEW(ctx, int32_t, parts->mesh->n_faces);
-    qc_status status = list && map && source ? QC_OK : QC_ERR_NOMEM;
+/* Union of the parts which are there, in order; NULL when there is none. With source != NULL the
+ * source faces, which count faces of source[c], become those of the input. */
+static qc_status merge_polygons(qc_ctx *ctx, qc_polygon_mesh *const *part, int32_t n_parts,
+                                qc_mesh *const *source, qc_polygon_mesh **out) {
+    const qc_polygon_mesh **list = QC__NEW(ctx, const qc_polygon_mesh *, n_parts);
+    const int32_t **map = QC__ZERO(ctx, const int32_t *, n_parts);
+    qc_status status = list && map ? QC_OK : QC_ERR_NOMEM;
     int32_t n = 0;
-    if (status == QC_OK) {
-        for (int32_t i = 0; i < parts->mesh->n_faces; i++) {
-            const int32_t t = parts->face[i];
-            source[i] = parts->mesh->source_face ? parts->mesh->source_face[t] : t;
-        }
-        for (int32_t c = 0; c < parts->n; c++) {
-            if (!part[c]) continue;
-            map[n] = source_face ? source + parts->face_start[c] : NULL;
-            list[n++] = part[c];
-        }
-        if (n > 0) status = qc_polygon_mesh_merge(ctx, n, list, map, out);
+    for (int32_t c = 0; status == QC_OK && c < n_parts; c++) {
+        if (!part[c]) continue;
+        map[n] = source ? source[c]->source_face : NULL;
+        list[n++] = part[c];
     }
+    if (n > 0) status = qc_polygon_mesh_merge(ctx, n, list, map, out);
     qc__free(list);
     qc__free(map);
-    qc__free(source);
     return status;
 }
 
@@ -107,8 +114,10 @@ static qc_status merge_reports(qc_ctx *ctx, const qc__collection *all, const qc_
 
 qc_status qc__collection_merge(qc_ctx *ctx, const qc__collection *all, const qc__parts *parts,
                                qc_remesh_result *result) {
-    qc_status status = merge_polygons(ctx, all->quads, parts, true, &result->quads);
-    if (status == QC_OK) status = merge_polygons(ctx, all->uv, parts, false, &result->uv);
+    qc_status status = merge_polygons(ctx, all->quads, parts->n, all->mesh, &result->quads);
+    if (status == QC_OK && result->quads)
+        status = qc__source_coordinates(ctx, all, parts, result->quads);
+    if (status == QC_OK) status = merge_polygons(ctx, all->uv, parts->n, NULL, &result->uv);
     if (status == QC_OK) status = merge_field(ctx, all->field, parts, &result->field);
     if (status == QC_OK)
         status = merge_reports(ctx, all, parts, result->quads != NULL, &result->report);

@@ -12,9 +12,10 @@ static const step before_field[] = {
 static const step computed_field[] = {{"curvature", "qc.field.curvature"},
                                       {"smooth", "qc.field.smooth"}};
 static const step imported_field[] = {{"field", "qc.field.import"}};
-static const step after_field[] = {{"matching", "qc.matching"}, {"hodge", "qc.hodge"},
-                                   {"round", "qc.round"},       {"untangle", "qc.untangle"},
-                                   {"extract", "qc.extract"},   {"measure", "qc.measure"}};
+static const step after_field[] = {{"matching", "qc.matching"}, {"split", "qc.split"},
+                                   {"hodge", "qc.hodge"},       {"round", "qc.round"},
+                                   {"untangle", "qc.untangle"}, {"extract", "qc.extract"},
+                                   {"measure", "qc.measure"}};
 
 #define APPEND(pipeline, steps) append(pipeline, steps, sizeof(steps) / sizeof *(steps))
 

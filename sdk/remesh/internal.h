@@ -48,14 +48,20 @@ qc_status qc__warn_failure(qc_ctx *ctx, const qc__parts *parts, int32_t c,
 /* What the runs of the components made; entry c is NULL when there is none. */
 typedef struct qc__collection {
     qc_polygon_mesh **quads, **uv; /* n components */
+    qc_mesh **mesh;                /* those the quads are made from: the component or refined */
     qc_face_field **field;
     qc_report **report;
 } qc__collection;
 qc_status qc__collection_create(qc_ctx *ctx, int32_t n, qc__collection *out);
 void qc__collection_clear(qc__collection *all, int32_t n);
-/* Takes over what bag holds beyond `before`, the bag the run of component c began with. */
-qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_bag *before,
-                             const qc_bag *bag);
+/* Takes over what bag holds beyond `before`, the bag the run of component c began with. Only a
+ * field on `mesh`, the component itself, is taken. */
+qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_mesh *mesh,
+                             const qc_bag *before, const qc_bag *bag);
+/* Makes the barycentric coordinates of the merged quads those in the faces of parts->mesh where a
+ * component was refined. */
+qc_status qc__source_coordinates(qc_ctx *ctx, const qc__collection *all, const qc__parts *parts,
+                                 qc_polygon_mesh *quads);
 qc_status qc__collection_merge(qc_ctx *ctx, const qc__collection *all, const qc__parts *parts,
                                qc_remesh_result *result);
 

@@ -49,10 +49,14 @@ static qc_status component_bag(const job *j, int32_t c, qc_bag **out) {
 
 static qc_status run_component(job *j, int32_t c) {
     qc_bag *bag = NULL;
+    qc_mesh *mesh = NULL;
     qc_status status = component_bag(j, c, &bag);
-    if (status == QC_OK)
+    if (status == QC_OK) {
+        mesh = qc_object_retain(qc_bag_latest(bag, QC_TYPE_MESH));
         status = qc_pipeline_run_range(j->pipeline, j->split, qc_pipeline_count(j->pipeline), bag);
-    if (status == QC_OK) status = qc__collection_add(j->ctx, &j->all, c, j->whole, bag);
+    }
+    if (status == QC_OK) status = qc__collection_add(j->ctx, &j->all, c, mesh, j->whole, bag);
+    qc_object_release(mesh);
     qc_bag_free(bag);
     return status;
 }

@@ -168,7 +168,7 @@ static void refused(world *w, const char *step, const char *type, const char *pr
 
 static void types_not_positions_decide_what_is_legal(void **state) {
     world *w = *state;
-    move(w, "size", position_of(w, "hodge") - 1);
+    move(w, "size", position_of(w, "split") - 1);
     assert_int_equal(qc_pipeline_check(w->pipeline, w->bag), QC_OK);
     move(w, "matching", position_of(w, "curvature"));
     refused(w, "matching", QC_TYPE_FACE_FIELD, "qc.field.curvature");

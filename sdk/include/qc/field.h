@@ -103,6 +103,17 @@ typedef struct qc_matching {
 QC_API qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
                                     qc_matching **out);
 
+/* Bisects every edge between two cones (vertices of index4 != 0), and the link of interior vertices
+ * whose triangles are too few for their angle (valence <= (4 - index4) / 2): a piecewise linear map
+ * with the cones on lattice points would have to fold there. Faces stay in their plane with their
+ * cross, weight, flag and length; old vertices keep their numbers and indices, midpoints have index
+ * 0. source_face and source_vertex as of the old mesh (its own numbers when it has none), -1 at
+ * midpoints. Nothing to split: the same objects, retained. Errors: ARGUMENT (sizing of another mesh),
+ * NOMEM, CANCELLED. */
+QC_API qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching,
+                                   const qc_sizing *sizing, qc_mesh **mesh, qc_sizing **sizing_out,
+                                   qc_matching **matching_out);
+
 /* Directional's .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a face), recognised
  * by content; N = 4 (N = 1 or 2 also make a cross). Vectors are projected to the face; four of them are
  * averaged as fourth powers. F and the order are those of the file the mesh came from: faces are looked up

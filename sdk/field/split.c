@@ -1,0 +1,139 @@
+/* Refines the mesh under a matching until a piecewise linear map with the cones on lattice points
+ * can be locally injective. A sector of k quarter turns needs more than k/2 triangles, as each
+ * image angle is below pi; and the ends of an edge are not both to be pinned, as their images may
+ * coincide or lie in a direction which another pinned neighbour has too. */
+#include "split.h"
+
+/* Edges which join two cones, and the link of vertices with too few triangles for their angle of
+ * 4 - index4 quarter turns. Returns how many there are. */
+static int32_t mark_edges(const qc_matching *matching, int32_t *valence, uint8_t *split) {
+    const qc_mesh *mesh = matching->field->mesh;
+    const int32_t *index4 = matching->index4;
+    int32_t count = 0;
+    for (int32_t c = 0; c < 3 * mesh->n_faces; c++) valence[mesh->face_vertex[c]]++;
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        split[e] = index4[mesh->edge_vertex[2 * e]] && index4[mesh->edge_vertex[2 * e + 1]];
+    for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
+        const int32_t v = mesh->face_vertex[c];
+        if (2 * valence[v] <= 4 - index4[v] && !qc_vertex_on_boundary(mesh, v))
+            split[mesh->halfedge_edge[c]] = 1;
+    }
+    for (int32_t e = 0; e < mesh->n_edges; e++) count += split[e];
+    return count;
+}
+
+static qc_status split_field(qc_ctx *ctx, const qc_face_field *old, const qc__bisection *b,
+                             qc_face_field **out) {
+    const size_t n = (size_t)b->mesh->n_faces;
+    qc_complex *x = QC__NEW(ctx, qc_complex, n);
+    double *weight = old->weight ? QC__NEW(ctx, double, n) : NULL;
+    uint8_t *trusted = old->trusted ? QC__NEW(ctx, uint8_t, n) : NULL;
+    qc_status status = QC_ERR_NOMEM;
+    if (x && (weight || !old->weight) && (trusted || !old->trusted)) {
+        for (size_t t = 0; t < n; t++) {
+            const int32_t p = b->parent[t];
+            x[t] = qc__z(qc__c(old->x[p]) * qc__c(b->turn[t]));
+            if (weight) weight[t] = old->weight[p];
+            if (trusted) trusted[t] = old->trusted[p];
+        }
+        status = qc_face_field_create(ctx, b->mesh, x, weight, trusted, out);
+    }
+    qc__free(x);
+    qc__free(weight);
+    qc__free(trusted);
+    return status;
+}
+
+static qc_status split_sizing(qc_ctx *ctx, const qc_sizing *old, const qc__bisection *b,
+                              qc_sizing **out) {
+    double *length = NULL;
+    if (old->length) {
+        length = QC__NEW(ctx, double, b->mesh->n_faces);
+        if (!length) return QC_ERR_NOMEM;
+        for (int32_t t = 0; t < b->mesh->n_faces; t++) length[t] = old->length[b->parent[t]];
+    }
+    const qc_status status =
+        qc_sizing_create(ctx, b->mesh, old->edge_length, old->target_quads, length, out);
+    qc__free(length);
+    return status;
+}
+
+/* The halves of an edge keep its theta, and its m up to multiples of 4: a turn of nearly pi may
+ * come out with the other sign in a child. Edges inside a face have theta = 0. */
+static qc_status split_turns(qc_ctx *ctx, const qc_matching *old, const qc__bisection *b,
+                             const qc_face_field *field, int8_t *m) {
+    const qc_mesh *mesh = b->mesh;
+    qc_complex *edge = QC__NEW(ctx, qc_complex, 3 * (size_t)mesh->n_faces);
+    qc_complex *rho = QC__NEW(ctx, qc_complex, mesh->n_edges);
+    qc_status status = edge && rho ? QC_OK : QC_ERR_NOMEM;
+    if (!status) status = qc_tangent_edges(ctx, mesh, edge);
+    if (!status) status = qc_tangent_transport(ctx, mesh, edge, rho);
+    for (int32_t e = 0; !status && e < mesh->n_edges; e++) {
+        const int32_t h = b->parent_halfedge[mesh->edge_halfedge[2 * e]];
+        const int32_t t = mesh->edge_halfedge[2 * e + 1];
+        m[e] = 0;
+        if (h < 0 || t < 0) continue;
+        const int32_t parent = old->field->mesh->halfedge_edge[h];
+        const qc__cplx before = qc__c(rho[e]) * qc__c(field->x[mesh->edge_halfedge[2 * e] / 3]);
+        const double turning = qc__arg(qc__c(field->x[t / 3]) * conj(before));
+        const double inherited = old->theta[parent] + old->m[parent] * QC__PI / 2;
+        m[e] = (int8_t)(old->m[parent] + 4 * (int)round((turning - inherited) / (2 * QC__PI)));
+    }
+    qc__free(edge);
+    qc__free(rho);
+    return status;
+}
+
+static qc_status split_matching(qc_ctx *ctx, const qc_matching *old, const qc__bisection *b,
+                                qc_matching **out) {
+    qc_face_field *field = NULL;
+    int8_t *m = QC__NEW(ctx, int8_t, b->mesh->n_edges);
+    qc_status status = m ? split_field(ctx, old->field, b, &field) : QC_ERR_NOMEM;
+    if (!status) status = split_turns(ctx, old, b, field, m);
+    if (!status) status = qc_matching_create(ctx, field, m, out);
+    qc_object_release(field);
+    qc__free(m);
+    return status;
+}
+
+static qc_status split_all(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
+                           const uint8_t *split, qc__bisection *b, qc_sizing **sizing_out,
+                           qc_matching **matching_out) {
+    qc_sizing *s = NULL;
+    qc_matching *m = NULL;
+    qc_status status = qc__bisect_edges(ctx, matching->field->mesh, split, b);
+    if (!status && !qc__progress(ctx, 0.5)) status = QC_ERR_CANCELLED;
+    if (!status) status = split_sizing(ctx, sizing, b, &s);
+    if (!status) status = split_matching(ctx, matching, b, &m);
+    if (status) {
+        qc_object_release(s);
+        return status;
+    }
+    *sizing_out = s;
+    *matching_out = m;
+    return QC_OK;
+}
+
+qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
+                            qc_mesh **mesh, qc_sizing **sizing_out, qc_matching **matching_out) {
+    const qc_mesh *old = matching->field->mesh;
+    if (sizing->mesh != old)
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
+                        "the sizing and the matching are of different meshes");
+    int32_t *valence = QC__ZERO(ctx, int32_t, old->n_vertices);
+    uint8_t *split = QC__NEW(ctx, uint8_t, old->n_edges);
+    qc__bisection b = {NULL, NULL, NULL, NULL};
+    qc_status status = valence && split ? QC_OK : QC_ERR_NOMEM;
+    if (!status && mark_edges(matching, valence, split) == 0) {
+        *mesh = qc_object_retain(old);
+        *sizing_out = qc_object_retain(sizing);
+        *matching_out = qc_object_retain(matching);
+    } else if (!status) {
+        status = split_all(ctx, matching, sizing, split, &b, sizing_out, matching_out);
+        if (!status) *mesh = qc_object_retain(b.mesh);
+    }
+    qc__bisection_free(&b);
+    qc__free(valence);
+    qc__free(split);
+    return status;
+}

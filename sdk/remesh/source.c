@@ -1,0 +1,117 @@
+/* Where the vertices of quads lie on the input, when the map was made on a refinement of it. */
+#include <math.h>
+
+#include "sdk/remesh/internal.h"
+
+/* Faces of a mesh by the face of the input they come from, as linked lists. */
+typedef struct by_source {
+    int32_t n;
+    int32_t *first, *next; /* n; n_faces; -1 = end */
+} by_source;
+
+static qc_status sort_by_source(qc_ctx *ctx, const qc_mesh *mesh, by_source *out) {
+    by_source s = {0, NULL, NULL};
+    const int32_t *source = mesh->source_face;
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        const int32_t f = source ? source[t] : t;
+        if (f >= s.n) s.n = f + 1;
+    }
+    s.first = QC__NEW(ctx, int32_t, s.n);
+    s.next = QC__NEW(ctx, int32_t, mesh->n_faces);
+    if (!s.first || !s.next) {
+        qc__free(s.first);
+        qc__free(s.next);
+        return QC_ERR_NOMEM;
+    }
+    for (int32_t f = 0; f < s.n; f++) s.first[f] = -1;
+    for (int32_t t = mesh->n_faces; t-- > 0;) {
+        const int32_t f = source ? source[t] : t;
+        s.next[t] = f < 0 ? -1 : s.first[f];
+        if (f >= 0) s.first[f] = t;
+    }
+    *out = s;
+    return QC_OK;
+}
+
+static const double *corner(const qc_mesh *mesh, int32_t t, int k) {
+    return mesh->position + 3 * (int64_t)mesh->face_vertex[3 * (int64_t)t + k];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Barycentric coordinates of the projection of p to face t; false when it has no area. */
+static bool project(const qc_mesh *mesh, int32_t t, const double p[3], double weight[3]) {
+    double e[2][3], d[3], n[3], c[3];
+    for (int i = 0; i < 3; i++) {
+        e[0][i] = corner(mesh, t, 1)[i] - corner(mesh, t, 0)[i];
+        e[1][i] = corner(mesh, t, 2)[i] - corner(mesh, t, 0)[i];
+        d[i] = p[i] - corner(mesh, t, 0)[i];
+    }
+    cross(e[0], e[1], n);
+    const double square = dot(n, n);
+    if (!(square > 0)) return false;
+    cross(d, e[1], c);
+    weight[1] = dot(c, n) / square;
+    cross(e[0], d, c);
+    weight[2] = dot(c, n) / square;
+    weight[0] = 1 - weight[1] - weight[2];
+    return true;
+}
+
+/* Of the triangles of a polygon the one which holds p best. */
+static void place(const qc_mesh *mesh, const by_source *s, int32_t source, const double p[3],
+                  double weight[3]) {
+    double best = -INFINITY, w[3];
+    if (source < 0 || source >= s->n) return;
+    for (int32_t t = s->first[source]; t >= 0; t = s->next[t]) {
+        if (!project(mesh, t, p, w)) continue;
+        const double least = fmin(w[0], fmin(w[1], w[2]));
+        if (least <= best) continue;
+        best = least;
+        for (int k = 0; k < 3; k++) weight[k] = w[k];
+    }
+}
+
+static void place_part(const qc_mesh *mesh, const by_source *s, const qc_mesh *refined,
+                       const qc_polygon_mesh *quads, double *barycentric) {
+    for (int32_t v = 0; v < quads->n_vertices; v++) {
+        const int32_t t = quads->source_face[v];
+        const double *w = quads->source_barycentric + 3 * (int64_t)v;
+        double p[3] = {0, 0, 0};
+        if (t < 0 || t >= refined->n_faces) continue;
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < 3; i++) p[i] += w[k] * corner(refined, t, k)[i];
+        place(mesh, s, refined->source_face ? refined->source_face[t] : t, p,
+              barycentric + 3 * (int64_t)v);
+    }
+}
+
+static bool is_refined(const qc__collection *all, const qc__parts *parts, int32_t c) {
+    return all->quads[c] && all->quads[c]->source_barycentric &&
+           all->mesh[c]->n_faces != parts->face_start[c + 1] - parts->face_start[c];
+}
+
+qc_status qc__source_coordinates(qc_ctx *ctx, const qc__collection *all, const qc__parts *parts,
+                                 qc_polygon_mesh *quads) {
+    by_source s = {0, NULL, NULL};
+    int64_t first = 0;
+    for (int32_t c = 0; c < parts->n; c++) {
+        if (is_refined(all, parts, c)) {
+            const qc_status status = s.first ? QC_OK : sort_by_source(ctx, parts->mesh, &s);
+            if (status != QC_OK) return status;
+            place_part(parts->mesh, &s, all->mesh[c], all->quads[c],
+                       quads->source_barycentric + 3 * first);
+        }
+        if (all->quads[c]) first += all->quads[c]->n_vertices;
+    }
+    qc__free(s.first);
+    qc__free(s.next);
+    return QC_OK;
+}
