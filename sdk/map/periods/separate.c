@@ -21,9 +21,10 @@ typedef struct search {
 
 static double _Complex unit_of(int32_t k) { return qc__turn(1.0, k); }
 
-static bool collides(const search *q, int32_t pair, double _Complex now) {
+/* 2: on one lattice point; 1: past each other; 0: apart. */
+static int32_t collides(const search *q, int32_t pair, double _Complex now) {
     const double _Complex w = q->wanted[pair];
-    if (creal(now) * creal(now) + cimag(now) * cimag(now) < 0.25) return true;
+    if (creal(now) * creal(now) + cimag(now) * cimag(now) < 0.25) return 2;
     return creal(now) * creal(w) + cimag(now) * cimag(w) < 0;
 }
 
@@ -101,7 +102,7 @@ static bool best_two_steps(search *q, int32_t pair, step *first, step *second) {
 
 static int32_t count_collisions(const search *q) {
     int32_t n = 0;
-    for (int32_t p = 0; p < q->s->n; p++) n += collides(q, p, q->now[p]);
+    for (int32_t p = 0; p < q->s->n; p++) n += collides(q, p, q->now[p]) > 0;
     return n;
 }
 
