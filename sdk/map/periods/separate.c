@@ -17,14 +17,15 @@ typedef struct search {
     int32_t *pair;
     double _Complex *coefficient;
     double energy;
+    int32_t coincidence; /* weight of two cones on one lattice point: 1, then 2                      */
 } search;
 
 static double _Complex unit_of(int32_t k) { return qc__turn(1.0, k); }
 
-/* 2: on one lattice point; 1: past each other; 0: apart. */
+/* Positive: on one lattice point (1, or 2 when that counts more), or past each other (1); 0: apart. */
 static int32_t collides(const search *q, int32_t pair, double _Complex now) {
     const double _Complex w = q->wanted[pair];
-    if (creal(now) * creal(now) + cimag(now) * cimag(now) < 0.25) return 2;
+    if (creal(now) * creal(now) + cimag(now) * cimag(now) < 0.25) return q->coincidence;
     return creal(now) * creal(w) + cimag(now) * cimag(w) < 0;
 }
 
@@ -176,10 +177,12 @@ static qc_status prepare(qc_ctx *ctx, search *q, const double *t) {
 
 qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_free,
                        const double *P, const double *t, double *z, double *energy, int32_t *left) {
-    search q = {.s = separation, .n = n_free, .P = P, .z = z, .energy = *energy};
+    search q = {.s = separation, .n = n_free, .P = P, .z = z, .energy = *energy, .coincidence = 1};
     qc_status status = prepare(ctx, &q, t);
     if (status == QC_OK && count_collisions(&q) > 0) {
         status = remove_collisions(ctx, &q);
+        q.coincidence = 2; /* what cannot be parted is better past each other than in one place */
+        if (status == QC_OK) status = remove_collisions(ctx, &q);
         if (status == QC_OK) status = descend(ctx, &q);
     }
     if (status == QC_OK) {
