@@ -33,7 +33,8 @@ typedef struct rounding {
     qc_complex *trial, *best; /* 3 n_faces                                                          */
     double best_scale, best_miss, harmonic, harmonic_direct;
     int64_t moves, evaluations;
-    int32_t collisions; /* pairs of cones which could not be kept apart in the last trial          */
+    int32_t collisions; /* pairs of cones which could not be kept apart in the last trial ...      */
+    int32_t best_collisions; /* ... and in the best map                                           */
 } rounding;
 
 /* --- periods of the seamless map ---------------------------------------------------------------- */
@@ -147,6 +148,15 @@ static qc_status energy_of_direct_rounding(rounding *r, double *energy) {
     return status;
 }
 
+/* Whether the trial beats the best map so far: a number of quads which is good enough, then cones kept apart, then the
+ * number of quads. */
+static bool is_better(const rounding *r, double miss) {
+    const bool good = miss <= promised + slack, best_good = r->best_miss <= promised + slack;
+    if (good != best_good) return good;
+    if (r->collisions != r->best_collisions) return r->collisions < r->best_collisions;
+    return miss < r->best_miss - slack;
+}
+
 /* The rounded map at a scale; keeps it when it is nearer to the wanted number of quads. */
 static qc_status try_scale(rounding *r, double scale, double wanted, double *quads) {
     const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
@@ -174,12 +184,13 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     r->evaluations += result.evaluations;
     *quads = signed_area(r->trial, r->mesh->n_faces);
     const double miss = wanted > 0 ? fabs(*quads / wanted - 1.0) : 0.0;
-    if (r->best_scale > 0 && miss >= r->best_miss - slack) return QC_OK;
+    if (r->best_scale > 0 && !is_better(r, miss)) return QC_OK;
     qc_complex *swap = r->best;
     r->best = r->trial;
     r->trial = swap;
     r->best_scale = scale;
     r->best_miss = miss;
+    r->best_collisions = r->collisions;
     r->harmonic = result.energy;
     r->harmonic_direct = result.energy_direct;
     return QC_OK;
@@ -193,7 +204,8 @@ static qc_status meet_density(rounding *r) {
         double quads = 0;
         const qc_status status = try_scale(r, scale, wanted, &quads);
         if (status != QC_OK) return status;
-        if (!(wanted > 0) || r->best_miss <= r->options.tolerance + slack) break;
+        if (!(wanted > 0)) break;
+        if (r->best_miss <= r->options.tolerance + slack && r->best_collisions == 0) break;
         if (i < NEWTON_ROUNDS - 1) {
             const double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
             scale *= factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
@@ -201,7 +213,7 @@ static qc_status meet_density(rounding *r) {
             if (i == NEWTON_ROUNDS - 1) middle = r->best_scale;
             const int32_t k = i - NEWTON_ROUNDS + 1;
             scale = middle * (1.0 + 0.01 * (k / 2 + 1) * (k % 2 ? -1 : 1));
-            if (r->best_miss <= promised) break;
+            if (r->best_miss <= promised && r->best_collisions == 0) break;
         }
     }
     return QC_OK;
@@ -336,9 +348,9 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless, const qc_ro
     if (status == QC_OK) status = prepare(&r);
     if (status == QC_OK) status = make_period_matrix(&r);
     if (status == QC_OK) status = meet_density(&r);
-    if (status == QC_OK && r.collisions > 0)
+    if (status == QC_OK && r.best_collisions > 0)
         qc__log(ctx, QC_LOG_WARNING, "%d pairs of cones are too close for this density",
-                (int)r.collisions);
+                (int)r.best_collisions);
     if (status == QC_OK) status = publish(&r, out);
     qc__separation_free(r.separation);
     qc__periods_free(r.periods);
