@@ -293,6 +293,17 @@ static qc_status make_guide(untangler *u, const qc_corner_map *map) {
     return QC_OK;
 }
 
+/* Cones of full turns have no holonomy; the guiding field tells them, and they stay on their lattice point. */
+static void pin_full_turns(untangler *u) {
+    for (int32_t v = 0; v < u->mesh->n_vertices && u->guide.cross; v++) {
+        if (u->map->pinned[v] || qc_vertex_on_boundary(u->mesh, v)) continue;
+        if (qc__guide_turns(&u->guide, v) == 4) continue;
+        u->map->pinned[v] = u->target->pinned[v] = 1;
+        const qc_complex p = {rint(u->target->value[v].re), rint(u->target->value[v].im)};
+        u->map->value[v] = u->target->value[v] = p;
+    }
+}
+
 static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_map *grid) {
     u->rotation = grid->rotation;
     qc_status status = qc__reduced_map_create(u->ctx, map->mesh, map->uv, u->rotation,
@@ -304,6 +315,7 @@ static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_m
     if (status == QC_OK)
         status = qc__untangle_targets(u->ctx, map->mesh, unit_length(map), u->hat, u->area);
     if (status == QC_OK) status = make_guide(u, map);
+    if (status == QC_OK) pin_full_turns(u);
     return status;
 }
 
