@@ -136,7 +136,7 @@ int cli_pipeline(qc_ctx *ctx, qc_registry *registry, const char *file,
 typedef struct cli_times {
     double read, write, total;
 } cli_times;
-/* The statistics of DESIGN 2 as JSON text; free() it. pipeline may be NULL. */
+/* The statistics of docs/files.md as JSON text; free() it. pipeline may be NULL. */
 char *cli_stats_json(const qc_report *report, const qc_pipeline *pipeline, const char *input,
                      const char *mode, const cli_times *times, int n_warnings,
                      const char *const *warnings);

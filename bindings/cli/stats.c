@@ -1,4 +1,5 @@
-/* The statistics file: keys as DESIGN 2 fixes them; ratios are made from the sums of the report. */
+/* The statistics file: keys as docs/files.md fixes them; ratios are made from the sums of the
+ * report. */
 #include "bindings/cli/cli.h"
 #include <jansson.h>
 #include <math.h>

@@ -50,16 +50,30 @@ void qc_ctx_free(qc_ctx *ctx) {
     ctx->resize(ctx->user, ctx, sizeof *ctx, 0);
 }
 
-const qc_error *qc_ctx_error(const qc_ctx *ctx) { return &ctx->error; }
-uint32_t qc_ctx_threads(const qc_ctx *ctx) { return ctx->threads; }
-const char *qc_version(void) { return QC_VERSION_STRING; }
+const qc_error *qc_ctx_error(const qc_ctx *ctx) {
+    return &ctx->error;
+}
+uint32_t qc_ctx_threads(const qc_ctx *ctx) {
+    return ctx->threads;
+}
+const char *qc_version(void) {
+    return QC_VERSION_STRING;
+}
 
 const char *qc_status_name(qc_status status) {
-    static const char *const names[] = {
-        "ok",          "wrong argument",          "out of memory",         "cancelled",
-        "not positive definite", "not a manifold", "incompatible version", "unusable input",
-        "input/output error",    "not found",      "ports do not fit",     "failed",
-        "not supported"};
+    static const char *const names[] = {"ok",
+                                        "wrong argument",
+                                        "out of memory",
+                                        "cancelled",
+                                        "not positive definite",
+                                        "not a manifold",
+                                        "incompatible version",
+                                        "unusable input",
+                                        "input/output error",
+                                        "not found",
+                                        "ports do not fit",
+                                        "failed",
+                                        "not supported"};
     const size_t n = sizeof names / sizeof *names;
     return status > 0 || (size_t)(-(int64_t)status) >= n ? "unknown status" : names[-status];
 }
@@ -119,12 +133,14 @@ bool qc__cancelled(const qc_ctx *ctx) {
 qc__range qc__range_begin(qc_ctx *ctx, const char *stage, double lo, double hi) {
     const qc__range outer = ctx->range;
     const double width = outer.hi - outer.lo;
-    ctx->range = (qc__range){outer.lo + lo * width, outer.lo + hi * width,
-                             stage ? stage : outer.stage};
+    ctx->range =
+        (qc__range){outer.lo + lo * width, outer.lo + hi * width, stage ? stage : outer.stage};
     return outer;
 }
 
-void qc__range_end(qc_ctx *ctx, qc__range outer) { ctx->range = outer; }
+void qc__range_end(qc_ctx *ctx, qc__range outer) {
+    ctx->range = outer;
+}
 
 double qc__now(void) {
     struct timespec t;

@@ -42,7 +42,8 @@ qc_status qc__read_file(qc_ctx *ctx, const char *path, char **data, size_t *size
     return QC_OK;
 }
 
-/* Devices and pipes (-o /dev/null) are written to directly: renaming over them would replace them. */
+/* Devices and pipes (-o /dev/null) are written to directly: renaming over them would replace them.
+ */
 static bool is_special(const char *path) {
     struct stat info;
     return stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
@@ -98,7 +99,8 @@ qc_status qc__writer_commit(qc_ctx *ctx, qc__writer *writer) {
     if (writer->temporary) good = good && rename(writer->temporary, writer->path) == 0;
     qc_status status = QC_OK;
     if (!good) {
-        status = qc__fail(ctx, QC_ERR_IO, -1, "%s: cannot write: %s", writer->path, strerror(errno));
+        status =
+            qc__fail(ctx, QC_ERR_IO, -1, "%s: cannot write: %s", writer->path, strerror(errno));
         if (writer->temporary) unlink(writer->temporary);
     }
     qc__free(writer->path);

@@ -27,7 +27,8 @@ void qc__free(void *p); /* NULL is fine */
 #define QC__NEW(ctx, T, count)  ((T *)qc__malloc((ctx), (size_t)(count), sizeof(T)))
 #define QC__ZERO(ctx, T, count) ((T *)qc__calloc((ctx), (size_t)(count), sizeof(T)))
 
-/* Makes room for at least `need` elements in a growing array (doubling); returns false on failure. */
+/* Makes room for at least `need` elements in a growing array (doubling); returns false on failure.
+ */
 bool qc__reserve(qc_ctx *ctx, void **array, int64_t *capacity, int64_t need, size_t size);
 
 /* Arena: many small blocks freed together. Blocks are 16-byte aligned. */

@@ -15,7 +15,9 @@ typedef struct block_header {
 
 _Static_assert(sizeof(block_header) == ALIGNMENT, "the payload follows the header directly");
 
-static block_header *header_of(void *p) { return (block_header *)((char *)p - ALIGNMENT); }
+static block_header *header_of(void *p) {
+    return (block_header *)((char *)p - ALIGNMENT);
+}
 
 void *qc__malloc(qc_ctx *ctx, size_t count, size_t size) {
     const size_t overhead = 2 * (size_t)ALIGNMENT;

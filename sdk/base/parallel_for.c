@@ -18,7 +18,7 @@ struct qc__pool {
     struct worker {
         qc__pool *pool;
         uint32_t index;
-    } *worker;
+    } * worker;
 };
 
 static void run_chunks(qc__pool *pool, uint32_t worker) {

@@ -1,5 +1,5 @@
 /* Orthonormal frames of the faces, edge vectors as complex numbers, and transport across edges
- * (DESIGN conventions: rho = -e_t / e_s). */
+ * (docs/conventions.md: rho = -e_t / e_s). */
 #include <math.h>
 
 #include "sdk/dec/internal.h"

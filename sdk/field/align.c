@@ -1,8 +1,8 @@
 /* Soft alignment to feature edges: the faces on both sides of one get its direction. */
 #include "internal.h"
 
-/* Direction of face t along its feature edges as a fourth power; edges which contradict each other (at 45
- * degrees) leave it to the longest. 0 when the face has none. */
+/* Direction of face t along its feature edges as a fourth power; edges which contradict each other
+ * (at 45 degrees) leave it to the longest. 0 when the face has none. */
 static qc__cplx feature_direction(const qc_mesh *mesh, const qc_complex *tangent,
                                   const uint8_t *edge, int32_t t) {
     qc__cplx sum = 0, longest = 0;

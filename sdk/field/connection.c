@@ -1,8 +1,9 @@
 /* Edge weights and transport of a mesh, and the pattern of matrices with one unknown per face. */
 #include "internal.h"
 
-/* |e|^2 / A_e of an edge between two equilateral triangles is 3.5. Needles would make it unbounded and the
- * system unsolvable in double precision; above this value the two faces move as one anyway. */
+/* |e|^2 / A_e of an edge between two equilateral triangles is 3.5. Needles would make it unbounded
+ * and the system unsolvable in double precision; above this value the two faces move as one anyway.
+ */
 #define OMEGA_MAX 1e5
 
 static void fill_omega(const qc_mesh *mesh, const qc__connection *c) {

@@ -1,7 +1,8 @@
 /* Balls of edge paths and the measure of crowding, see crowd.h. */
 #include "crowd.h"
 
-qc_status qc__crowd_create(qc_ctx *ctx, const qc_mesh *mesh, const int32_t *index4, qc__crowd *out) {
+qc_status qc__crowd_create(qc_ctx *ctx, const qc_mesh *mesh, const int32_t *index4,
+                           qc__crowd *out) {
     int32_t V = mesh->n_vertices;
     *out = (qc__crowd){mesh,
                        index4,

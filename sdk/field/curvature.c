@@ -1,8 +1,9 @@
-/* Principal curvature directions per face (thesis 5.1.1) from the shape operator of either estimator. */
+/* Principal curvature directions per face (thesis 5.1.1) from the shape operator of either
+ * estimator. */
 #include "internal.h"
 
-/* Eigenvectors of [a b; b d]: with w = (a - d)/2 + i b the eigenvalue h + |w|, h = (a + d)/2, belongs to
- * sqrt(w/|w|), and h - |w| to i times that. Umbilics: the real axis. */
+/* Eigenvectors of [a b; b d]: with w = (a - d)/2 + i b the eigenvalue h + |w|, h = (a + d)/2,
+ * belongs to sqrt(w/|w|), and h - |w| to i times that. Umbilics: the real axis. */
 qc__cplx qc__principal(double a, double b, double d, double kappa[2]) {
     double h = (a + d) / 2, r = hypot((a - d) / 2, b), sign = h < 0 ? -1 : 1;
     kappa[0] = h + sign * r;
@@ -18,7 +19,8 @@ typedef struct bending_job {
     double *beta;
 } bending_job;
 
-/* Angles below this are rounding noise of coordinates, not bending: flat regions stay exactly flat. */
+/* Angles below this are rounding noise of coordinates, not bending: flat regions stay exactly flat.
+ */
 #define BENDING_NOISE 1e-8
 
 static void bend(void *arg, int64_t begin, int64_t end, uint32_t worker) {
@@ -30,7 +32,8 @@ static void bend(void *arg, int64_t begin, int64_t end, uint32_t worker) {
         double axis[3], turn[3], angle = 0;
         if (g >= 0) {
             const double *n = j->normal + 3 * (size_t)(h / 3), *o = j->normal + 3 * (size_t)(g / 3);
-            qc__sub(j->mesh->position + 3 * (size_t)v[1], j->mesh->position + 3 * (size_t)v[0], axis);
+            qc__sub(j->mesh->position + 3 * (size_t)v[1], j->mesh->position + 3 * (size_t)v[0],
+                    axis);
             qc__cross(n, o, turn);
             angle = atan2(sqrt(qc__dot(turn, turn)), qc__dot(n, o));
             if (qc__dot(turn, axis) < 0) angle = -angle;
@@ -44,8 +47,8 @@ void qc__edge_bending(qc_ctx *ctx, const qc_mesh *mesh, const double *normal, do
     qc__parallel_for(ctx, mesh->n_edges, 8192, bend, &job);
 }
 
-static qc_status shape_operators(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator,
-                                 double radius, double *shape) {
+static qc_status shape_operators(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator, double radius,
+                                 double *shape) {
     size_t F = (size_t)mesh->n_faces;
     double *normal = QC__NEW(ctx, double, 3 * F), *area = QC__NEW(ctx, double, F);
     double *beta = QC__NEW(ctx, double, mesh->n_edges);
@@ -55,11 +58,11 @@ static qc_status shape_operators(qc_ctx *ctx, const qc_mesh *mesh, int32_t estim
     if (!status) status = qc_tangent_frames(ctx, mesh, real, imaginary);
     if (!status) {
         qc__edge_bending(ctx, mesh, normal, beta);
-        status = estimator == QC_CURVATURE_COHEN_STEINER_MORVAN
-                     ? qc__curvature_normal_cycle(ctx, mesh, radius, beta, area, real, imaginary,
-                                                  shape)
-                     : qc__curvature_hildebrandt_polthier(ctx, mesh, normal, beta, area, real,
-                                                          imaginary, shape);
+        status =
+            estimator == QC_CURVATURE_COHEN_STEINER_MORVAN
+                ? qc__curvature_normal_cycle(ctx, mesh, radius, beta, area, real, imaginary, shape)
+                : qc__curvature_hildebrandt_polthier(ctx, mesh, normal, beta, area, real, imaginary,
+                                                     shape);
     }
     qc__free(normal);
     qc__free(area);

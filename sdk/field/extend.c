@@ -1,5 +1,5 @@
-/* Trusted regions and their extension (thesis 5.1.2): the most stable part of each component keeps its
- * directions, which are then transported breadth first to the rest. */
+/* Trusted regions and their extension (thesis 5.1.2): the most stable part of each component keeps
+ * its directions, which are then transported breadth first to the rest. */
 #include "internal.h"
 
 #include <stdlib.h>
@@ -61,8 +61,8 @@ static int32_t spread(const qc_mesh *mesh, const qc_complex *rho, qc_complex *x,
     return head;
 }
 
-/* Starts of the breadth-first search: the trusted faces; in components without any, the faces on the
- * boundary, along their boundary edge. */
+/* Starts of the breadth-first search: the trusted faces; in components without any, the faces on
+ * the boundary, along their boundary edge. */
 static int32_t seed(const qc_mesh *mesh, const qc_complex *edge, const uint8_t *trusted,
                     uint8_t *stable, qc_complex *x, uint8_t *reached, int32_t *queue) {
     int32_t tail = 0;

@@ -1,4 +1,5 @@
-/* Reads cross fields: .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a face). */
+/* Reads cross fields: .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a
+ * face). */
 #include "internal.h"
 
 #include <string.h>
@@ -6,15 +7,18 @@
 typedef struct scanner {
     qc_ctx *ctx;
     const char *path;
-    char *text;     /* position */
-    int64_t line;   /* of the position, from 1 */
+    char *text;   /* position */
+    int64_t line; /* of the position, from 1 */
 } scanner;
 
 static void skip_space(scanner *s) {
     for (;; s->text++) {
-        if (*s->text == '\n') s->line++;
-        else if (*s->text == '#') s->text += strcspn(s->text, "\n") - 1;
-        else if (*s->text != ' ' && *s->text != '\t' && *s->text != '\r') return;
+        if (*s->text == '\n')
+            s->line++;
+        else if (*s->text == '#')
+            s->text += strcspn(s->text, "\n") - 1;
+        else if (*s->text != ' ' && *s->text != '\t' && *s->text != '\r')
+            return;
     }
 }
 
@@ -41,9 +45,10 @@ static qc_status next_count(scanner *s, int32_t *out) {
     qc_status status = next_number(s, &value);
     if (status) return status;
     if (!(value >= 1 && value <= INT32_MAX && value == floor(value)))
-        return qc__fail(s->ctx, QC_ERR_INPUT, s->line,
-                        "%s, line %lld: the counts `N F` (.rawfield) or F, N (.rosy) must come first",
-                        s->path, (long long)s->line);
+        return qc__fail(
+            s->ctx, QC_ERR_INPUT, s->line,
+            "%s, line %lld: the counts `N F` (.rawfield) or F, N (.rosy) must come first", s->path,
+            (long long)s->line);
     *out = (int32_t)value;
     return QC_OK;
 }
@@ -62,10 +67,12 @@ static int32_t source_faces(const qc_mesh *mesh, bool *exact) {
     return n;
 }
 
-static bool is_degree(int32_t n) { return n == 1 || n == 2 || n == 4; }
+static bool is_degree(int32_t n) {
+    return n == 1 || n == 2 || n == 4;
+}
 
-/* `N F` is a .rawfield and F, N a .rosy; where both would fit the mesh (four faces), a .rawfield has them on
- * one line. */
+/* `N F` is a .rawfield and F, N a .rosy; where both would fit the mesh (four faces), a .rawfield
+ * has them on one line. */
 static qc_status read_header(scanner *s, const qc_mesh *mesh, layout *out) {
     int32_t a = 0, b = 0;
     qc_status status = next_count(s, &a);
@@ -80,13 +87,14 @@ static qc_status read_header(scanner *s, const qc_mesh *mesh, layout *out) {
     *out = raw ? (layout){a, b, a} : (layout){b, a, 1};
     if (!is_degree(out->degree))
         return qc__fail(s->ctx, QC_ERR_INPUT, line,
-                        "%s, line %lld: N = %d directions a face; a cross field needs N = 4", s->path,
-                        (long long)line, (int)out->degree);
+                        "%s, line %lld: N = %d directions a face; a cross field needs N = 4",
+                        s->path, (long long)line, (int)out->degree);
     if (exact ? out->faces != faces : out->faces < faces)
-        return qc__fail(s->ctx, QC_ERR_INPUT, line,
-                        "%s, line %lld: the field has %d faces but the mesh has %d; is it the field of "
-                        "another mesh?",
-                        s->path, (long long)line, (int)out->faces, (int)faces);
+        return qc__fail(
+            s->ctx, QC_ERR_INPUT, line,
+            "%s, line %lld: the field has %d faces but the mesh has %d; is it the field of "
+            "another mesh?",
+            s->path, (long long)line, (int)out->faces, (int)faces);
     return QC_OK;
 }
 
@@ -110,8 +118,9 @@ static qc_status read_vectors(scanner *s, const layout *l, double *vector, int64
     return QC_OK;
 }
 
-/* The cross nearest to n vectors in the plane (u, v): mean of the fourth powers of their directions, the root
- * which is closest to the first vector. 0 when the first vector has no part in the plane. */
+/* The cross nearest to n vectors in the plane (u, v): mean of the fourth powers of their
+ * directions, the root which is closest to the first vector. 0 when the first vector has no part in
+ * the plane. */
 static qc__cplx nearest_cross(const double *vector, int32_t n, const double *u, const double *v) {
     qc__cplx first = 0, sum = 0;
     for (int32_t k = 0; k < n; k++) {
@@ -142,10 +151,11 @@ static qc_status make_crosses(scanner *s, const qc_mesh *mesh, const layout *l,
                                        real + 3 * t, imaginary + 3 * t);
         x[t] = qc__z(cross);
         if (creal(cross) == 0 && cimag(cross) == 0)
-            status = qc__fail(s->ctx, QC_ERR_INPUT, line[source],
-                              "%s, line %lld: the vector of face %zu is zero or perpendicular to the "
-                              "face",
-                              s->path, (long long)line[source], source);
+            status =
+                qc__fail(s->ctx, QC_ERR_INPUT, line[source],
+                         "%s, line %lld: the vector of face %zu is zero or perpendicular to the "
+                         "face",
+                         s->path, (long long)line[source], source);
     }
     qc__free(real);
     qc__free(imaginary);

@@ -1,7 +1,8 @@
-/* Shape operators of Hildebrandt and Polthier, "Anisotropic filtering of non-linear surface features"
- * (2004), thesis 1.1: S(e) = 2 |e| cos(alpha_e / 2) (e x n_e)(e x n_e)^T with the unit edge direction e, the
- * bisecting normal n_e and the interior dihedral angle alpha_e; S(p) = 1/2 sum_e <n_p, n_e> S(e) over the
- * share A_p of vertex p; a face averages its three vertices and is restricted to its plane. */
+/* Shape operators of Hildebrandt and Polthier, "Anisotropic filtering of non-linear surface
+ * features" (2004), thesis 1.1: S(e) = 2 |e| cos(alpha_e / 2) (e x n_e)(e x n_e)^T with the unit
+ * edge direction e, the bisecting normal n_e and the interior dihedral angle alpha_e; S(p) = 1/2
+ * sum_e <n_p, n_e> S(e) over the share A_p of vertex p; a face averages its three vertices and is
+ * restricted to its plane. */
 #include "internal.h"
 
 #include <string.h>
@@ -39,7 +40,8 @@ static void vertex_normals(const qc_mesh *mesh, const double *normal, const doub
 /* cos(alpha/2) = sin(beta/2) with the bending angle beta = pi - alpha. */
 static void add_edge(const qc_mesh *mesh, int32_t e, double beta, const double *normal,
                      const double *vertex_normal, double *tensor) {
-    size_t s = (size_t)(mesh->edge_halfedge[2 * e] / 3), t = (size_t)(mesh->edge_halfedge[2 * e + 1] / 3);
+    size_t s = (size_t)(mesh->edge_halfedge[2 * e] / 3),
+           t = (size_t)(mesh->edge_halfedge[2 * e + 1] / 3);
     double axis[3], bisector[3], b[3];
     const int32_t *v = mesh->edge_vertex + 2 * e;
     qc__sub(mesh->position + 3 * (size_t)v[1], mesh->position + 3 * (size_t)v[0], axis);

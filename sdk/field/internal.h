@@ -1,4 +1,5 @@
-/* Shared inside sdk/field: complex numbers, matrices with one unknown per face, reference length. */
+/* Shared inside sdk/field: complex numbers, matrices with one unknown per face, reference length.
+ */
 #ifndef QC_FIELD_INTERNAL_H
 #define QC_FIELD_INTERNAL_H
 
@@ -10,21 +11,29 @@
 
 typedef double _Complex qc__cplx;
 
-static inline qc__cplx qc__c(qc_complex a) { return a.re + a.im * I; }
-static inline qc_complex qc__z(qc__cplx a) { return (qc_complex){creal(a), cimag(a)}; }
+static inline qc__cplx qc__c(qc_complex a) {
+    return a.re + a.im * I;
+}
+static inline qc_complex qc__z(qc__cplx a) {
+    return (qc_complex){creal(a), cimag(a)};
+}
 static inline qc__cplx qc__unit(qc__cplx a) {
     double square = creal(a) * creal(a) + cimag(a) * cimag(a), r = sqrt(square);
     if (!(square > 1e-280 && square < 1e280)) r = hypot(creal(a), cimag(a));
     return r > 0 ? a / r : 1.0;
 }
-static inline qc__cplx qc__fourth(qc__cplx a) { return (a * a) * (a * a); }
-static inline double qc__arg(qc__cplx a) { return atan2(cimag(a), creal(a)); }
+static inline qc__cplx qc__fourth(qc__cplx a) {
+    return (a * a) * (a * a);
+}
+static inline double qc__arg(qc__cplx a) {
+    return atan2(cimag(a), creal(a));
+}
 
 #define QC__PI 3.14159265358979323846
 
 /* Pattern of the upper triangle of a matrix coupling each face with its neighbours. The diagonal of
- * column f is entry colptr[f+1] - 1; entry[e] couples the faces s < t of interior edge e (row s, column
- * t), -1 on the boundary. Edges shared by the same two faces share an entry: add to it. */
+ * column f is entry colptr[f+1] - 1; entry[e] couples the faces s < t of interior edge e (row s,
+ * column t), -1 on the boundary. Edges shared by the same two faces share an entry: add to it. */
 typedef struct qc__face_pattern {
     int64_t *colptr; /* n_faces + 1 */
     int32_t *row;
@@ -42,24 +51,27 @@ typedef struct qc__connection {
 qc_status qc__connection_create(qc_ctx *ctx, const qc_mesh *mesh, qc__connection *out);
 void qc__connection_free(qc__connection *connection);
 
-/* Length which makes curvatures and areas dimensionless: the edge of one quad when the surface has 10000.
- * It depends on the surface only, so weights mean the same at every scale and resolution. */
-static inline double qc__reference_length(const qc_mesh *mesh) { return sqrt(mesh->area) / 100; }
+/* Length which makes curvatures and areas dimensionless: the edge of one quad when the surface has
+ * 10000. It depends on the surface only, so weights mean the same at every scale and resolution. */
+static inline double qc__reference_length(const qc_mesh *mesh) {
+    return sqrt(mesh->area) / 100;
+}
 
-/* a_e = arg(x_t / (rho x_s)), m_e = round(2 a_e / pi), theta_e = a_e - m_e pi / 2 (DESIGN 3). Either
- * output may be NULL; 0 on the boundary. */
+/* a_e = arg(x_t / (rho x_s)), m_e = round(2 a_e / pi), theta_e = a_e - m_e pi / 2
+ * (docs/conventions.md). Either output may be NULL; 0 on the boundary. */
 void qc__field_match(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *rho, const qc_complex *x,
                      int8_t *m, double *theta);
 
-/* Index of an interior vertex in quarters from the theta of its edges: an integer up to rounding. */
+/* Index of an interior vertex in quarters from the theta of its edges: an integer up to rounding.
+ */
 double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
                          int32_t p);
 
 /* Shape operator of a face in its frame, [a b; b d]: larger |eigenvalue| first in kappa[2]. */
 qc__cplx qc__principal(double a, double b, double d, double kappa[2]);
 
-/* Signed angle between the normals at each interior edge, positive where convex; 0 on the boundary and where
- * it is rounding noise. normal: 3 n_faces; beta: n_edges. */
+/* Signed angle between the normals at each interior edge, positive where convex; 0 on the boundary
+ * and where it is rounding noise. normal: 3 n_faces; beta: n_edges. */
 void qc__edge_bending(qc_ctx *ctx, const qc_mesh *mesh, const double *normal, double *beta);
 
 /* The two estimators: shape operators as (a, b, d) per face, 3 n_faces. */

@@ -1,4 +1,4 @@
-/* Matching and indices of a cross field (thesis (5.1), signs of DESIGN 3). */
+/* Matching and indices of a cross field (thesis (5.1), signs of docs/conventions.md). */
 #include "internal.h"
 
 typedef struct matching_object {
@@ -58,13 +58,14 @@ static void measure_given(const qc_mesh *mesh, const qc_complex *rho, const qc_c
     }
 }
 
-/* Angle of corner c between its two edges, from the same vectors as the transport, so that the sum below
- * is a multiple of pi/2 up to rounding even in slivers. */
+/* Angle of corner c between its two edges, from the same vectors as the transport, so that the sum
+ * below is a multiple of pi/2 up to rounding even in slivers. */
 static double corner_angle(const qc_complex *edge, int32_t c) {
     return fabs(qc__arg(-qc__c(edge[qc_next(c)]) * conj(qc__c(edge[qc_prev(c)]))));
 }
 
-/* (K(p) + sum of +-theta) / (2 pi) in quarters; +theta where s -> t is counter-clockwise about p. */
+/* (K(p) + sum of +-theta) / (2 pi) in quarters; +theta where s -> t is counter-clockwise about p.
+ */
 double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
                          int32_t p) {
     int32_t first = mesh->vertex_corner[p], c = first;
@@ -97,8 +98,8 @@ static qc_status measure_indices(qc_ctx *ctx, const qc_mesh *mesh, const qc_comp
     o->matching.index4_sum = (int32_t)sum;
     if (mesh->n_boundary_edges == 0 && sum != 4 * (int64_t)mesh->euler)
         return qc__fail(ctx, QC_ERR_FAILED, -1,
-                        "the indices sum to %d/4 instead of the Euler characteristic %d",
-                        (int)sum, (int)mesh->euler);
+                        "the indices sum to %d/4 instead of the Euler characteristic %d", (int)sum,
+                        (int)mesh->euler);
     return QC_OK;
 }
 

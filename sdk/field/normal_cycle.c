@@ -1,11 +1,11 @@
-/* Shape operators by the normal cycle of Cohen-Steiner and Morvan, "Restricted Delaunay triangulations and
- * normal cycle" (2003): the tensor 1/|B| sum_e beta(e) |e n B| e e^T over a ball B about each vertex; a face
- * averages its three vertices. The principal directions of T are swapped against the shape operator's, so it
- * enters as J T J^T.
+/* Shape operators by the normal cycle of Cohen-Steiner and Morvan, "Restricted Delaunay
+ * triangulations and normal cycle" (2003): the tensor 1/|B| sum_e beta(e) |e n B| e e^T over a ball
+ * B about each vertex; a face averages its three vertices. The principal directions of T are
+ * swapped against the shape operator's, so it enters as J T J^T.
  *
- * The part of the surface in B is found breadth first from the vertex, so the cost is the number of faces in
- * the balls; at most FACE_LIMIT faces are visited, which bounds it: the ball is then effectively smaller, but
- * an average over so many faces is free of noise anyway. */
+ * The part of the surface in B is found breadth first from the vertex, so the cost is the number of
+ * faces in the balls; at most FACE_LIMIT faces are visited, which bounds it: the ball is then
+ * effectively smaller, but an average over so many faces is free of noise anyway. */
 #include "internal.h"
 
 enum { FACE_LIMIT = 200, CHUNK = 256 };
@@ -26,7 +26,8 @@ typedef struct cycle_job {
     int32_t *queue;   /* FACE_LIMIT per worker                                       */
 } cycle_job;
 
-/* Share of segment a, a + d inside the ball of the given radius about 0: roots of |a + u d|^2 = r^2. */
+/* Share of segment a, a + d inside the ball of the given radius about 0: roots of |a + u d|^2 =
+ * r^2. */
 static double share_inside(const double a[3], const double d[3], double r) {
     double dd = qc__dot(d, d), ad = qc__dot(a, d), disc = ad * ad - dd * (qc__dot(a, a) - r * r);
     if (!(disc > 0) || !(dd > 0)) return 0;
@@ -41,7 +42,8 @@ typedef struct ball {
     double radius, area, *tensor;
 } ball;
 
-/* Adds halfedge k of a visited face, half of its edge's tensor (its twin adds the rest); its share inside. */
+/* Adds halfedge k of a visited face, half of its edge's tensor (its twin adds the rest); its share
+ * inside. */
 static double add_halfedge(const patch *face, int k, ball *B, double *length) {
     const double *p = face->corner[k == 2 ? 0 : k + 1], *q = face->corner[k == 0 ? 2 : k - 1];
     double a[3], e[3];

@@ -6,7 +6,8 @@
 #define TOLERANCE 1e-7 /* relative change of mu in one step */
 enum { STEPS = 200 };
 
-/* Start vector: unit numbers with well-scattered phases (golden ratio), the same on every machine. */
+/* Start vector: unit numbers with well-scattered phases (golden ratio), the same on every machine.
+ */
 static void start(qc__power_system *s) {
     for (int32_t t = 0; t < s->mesh->n_faces; t++) {
         double phase = 2 * QC__PI * fmod(0.6180339887498949 * (t + 1.0), 1);
@@ -14,7 +15,8 @@ static void start(qc__power_system *s) {
     }
 }
 
-/* M-norms of the components of z; scales each to one (the aligned ones as well: they are not used). */
+/* M-norms of the components of z; scales each to one (the aligned ones as well: they are not used).
+ */
 static void normalise(qc__power_system *s) {
     const qc_mesh *mesh = s->mesh;
     memset(s->norm, 0, (size_t)mesh->n_components * sizeof *s->norm);

@@ -1,5 +1,5 @@
-/* Cross fields as sections z = x^4 of the fourth power of the tangent bundle (Knoeppel, Crane, Pinkall,
- * Schroeder, "Globally optimal direction fields" (2013)) with the weights of thesis (5.3):
+/* Cross fields as sections z = x^4 of the fourth power of the tangent bundle (Knoeppel, Crane,
+ * Pinkall, Schroeder, "Globally optimal direction fields" (2013)) with the weights of thesis (5.3):
  *     A = sum_e omega_e |z_t - rho^4 z_s|^2,   M = diag(A_t / l^2),   W = diag(w_t A_t / l^2). */
 #ifndef QC_FIELD_POWER_SYSTEM_H
 #define QC_FIELD_POWER_SYSTEM_H
@@ -25,14 +25,14 @@ qc_status qc__power_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weigh
                            const uint8_t *trusted, double alignment, qc__power_system *s);
 void qc__power_free(qc__power_system *s);
 
-/* value = A + t W + diagonal of (shift M trace(A) / trace(M) in components without alignment, inertia M
- * everywhere). */
+/* value = A + t W + diagonal of (shift M trace(A) / trace(M) in components without alignment,
+ * inertia M everywhere). */
 void qc__power_fill(qc__power_system *s, double shift, double inertia);
 /* Factor of the matrix last filled. */
 qc_status qc__power_factorise(qc_ctx *ctx, qc__power_system *s);
 
-/* z = eigenvector of the smallest eigenvalue of A z = mu M z in each component without alignment, of M-norm
- * one. Needs the factor of a slightly shifted matrix. */
+/* z = eigenvector of the smallest eigenvalue of A z = mu M z in each component without alignment,
+ * of M-norm one. Needs the factor of a slightly shifted matrix. */
 qc_status qc__power_eigenvector(qc_ctx *ctx, qc__power_system *s);
 
 #endif

@@ -24,7 +24,8 @@ void qc__region_free(qc__region *r) {
     qc__free(r->stack);
 }
 
-/* Adds the faces of the region about vertex p to patch `number`; returns the height of the stack. */
+/* Adds the faces of the region about vertex p to patch `number`; returns the height of the stack.
+ */
 static int32_t claim_fan(qc__region *r, int32_t p, int32_t number, int32_t top) {
     int32_t first = r->mesh->vertex_corner[p], c = first;
     do {
@@ -59,7 +60,8 @@ void qc__region_set(qc__region *r, const uint8_t *inside) {
     }
 }
 
-/* z in the face of h of a section which is `neighbour` in the face across h; plain: z is a function. */
+/* z in the face of h of a section which is `neighbour` in the face across h; plain: z is a
+ * function. */
 static qc__cplx across(const qc__region *r, bool plain, int32_t h, qc__cplx neighbour) {
     int32_t e = r->mesh->halfedge_edge[h];
     if (plain) return neighbour;
@@ -81,8 +83,8 @@ static int64_t find_row(local_system *s, int64_t begin, int64_t end, int32_t row
 }
 
 /* Column i: neighbours of lower number, sorted, then the diagonal. */
-static int64_t add_column(const qc__region *r, const qc_complex *x, double inertia,
-                          local_system *s, int32_t i, int64_t begin) {
+static int64_t add_column(const qc__region *r, const qc_complex *x, double inertia, local_system *s,
+                          int32_t i, int64_t begin) {
     int32_t t = r->face[i];
     int64_t end = begin;
     double diagonal = inertia * r->c->area[t];
@@ -134,8 +136,7 @@ static void transport(const qc__region *r, const qc_complex *x, qc__cplx *z) {
 
 static qc_status step_flow(qc_ctx *ctx, const qc__region *r, const local_system *s,
                            const qc_factor *factor, double inertia, qc__cplx *z) {
-    for (int32_t i = 0; i < r->n; i++)
-        z[i] = s->pull[i] + inertia * r->c->area[r->face[i]] * z[i];
+    for (int32_t i = 0; i < r->n; i++) z[i] = s->pull[i] + inertia * r->c->area[r->face[i]] * z[i];
     qc_status status = qc_solve(ctx, factor, 1, (qc_complex *)z);
     for (int32_t i = 0; !status && i < r->n; i++) z[i] = qc__unit(z[i]);
     return status;
@@ -179,11 +180,12 @@ static double total_area(const qc__region *r) {
     return area;
 }
 
-/* Part of the unit of the diagonal which keeps patches without a kept neighbour from being singular. */
+/* Part of the unit of the diagonal which keeps patches without a kept neighbour from being
+ * singular. */
 #define SHIFT 1e-6
 
-qc_status qc__region_solve(qc_ctx *ctx, const qc__region *r, const qc_complex *x,
-                           bool transported, double length, qc__cplx *z) {
+qc_status qc__region_solve(qc_ctx *ctx, const qc__region *r, const qc_complex *x, bool transported,
+                           double length, qc__cplx *z) {
     local_system s = {.plain = false};
     qc_factor *factor = NULL;
     double inertia = transported ? 2 / (length * length) : SHIFT / total_area(r);

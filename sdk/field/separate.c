@@ -1,7 +1,8 @@
-/* Frees crowded singularities of the alignment which holds them together: a few faces around them, more in
- * each round, are solved for again by smoothness alone (Knoeppel et al. 2013; flow of Viertel and Osting
- * 2019), which cancels opposite neighbours and spreads the index of a vertex over several. Pairs which the
- * curvature of a spike of the mesh keeps alive are cancelled by prescribing their indices. */
+/* Frees crowded singularities of the alignment which holds them together: a few faces around them,
+ * more in each round, are solved for again by smoothness alone (Knoeppel et al. 2013; flow of
+ * Viertel and Osting 2019), which cancels opposite neighbours and spreads the index of a vertex
+ * over several. Pairs which the curvature of a spike of the mesh keeps alive are cancelled by
+ * prescribing their indices. */
 #include "crowd.h"
 #include "region.h"
 
@@ -17,12 +18,12 @@ typedef struct separator {
     qc__crowd crowd;
     qc__region region;
     double distance;
-    double *theta;   /* n_edges                                                    */
-    int32_t *index4; /* n_vertices                                                 */
-    uint8_t *inside; /* n_faces                                                    */
-    uint8_t *seen;   /* n_vertices                                                 */
-    qc_complex *x;   /* n_faces, the result                                        */
-    qc__cplx *z;     /* n_faces, of the region                                     */
+    double *theta;           /* n_edges                                                    */
+    int32_t *index4;         /* n_vertices                                                 */
+    uint8_t *inside;         /* n_faces                                                    */
+    uint8_t *seen;           /* n_vertices                                                 */
+    qc_complex *x;           /* n_faces, the result                                        */
+    qc__cplx *z;             /* n_faces, of the region                                     */
     int32_t *before, *after; /* n_faces: crowding of each patch                     */
 } separator;
 
@@ -49,7 +50,8 @@ static qc_status prepare(qc_ctx *ctx, separator *s, const qc_complex *x) {
     s->z = QC__NEW(ctx, qc__cplx, F);
     s->before = QC__NEW(ctx, int32_t, F);
     s->after = QC__NEW(ctx, int32_t, F);
-    if (!s->theta || !s->index4 || !s->inside || !s->seen || !s->x || !s->z || !s->before || !s->after)
+    if (!s->theta || !s->index4 || !s->inside || !s->seen || !s->x || !s->z || !s->before ||
+        !s->after)
         return QC_ERR_NOMEM;
     qc_status status = qc__connection_create(ctx, s->mesh, &s->c);
     if (!status) status = qc__crowd_create(ctx, s->mesh, s->index4, &s->crowd);
@@ -127,7 +129,8 @@ static void measure_patches(separator *s, int32_t *out) {
     }
 }
 
-/* Exchanges the crosses of the region with z, of the patches which did not improve only if `back`. */
+/* Exchanges the crosses of the region with z, of the patches which did not improve only if `back`.
+ */
 static void swap_crosses(separator *s, bool back) {
     const qc__region *r = &s->region;
     for (int32_t i = 0; i < r->n; i++) {
@@ -140,8 +143,8 @@ static void swap_crosses(separator *s, bool back) {
     }
 }
 
-/* Moves a quarter of index over edge e, from its end p to the other, which is returned: theta turns by
- * pi/2. */
+/* Moves a quarter of index over edge e, from its end p to the other, which is returned: theta turns
+ * by pi/2. */
 static int32_t move_quarter(separator *s, int32_t e, int32_t p) {
     int32_t h = s->mesh->edge_halfedge[2 * e];
     bool ends = qc_halfedge_end(s->mesh, h) == p;
@@ -178,8 +181,7 @@ static void prescribe(separator *s) {
 static qc_status solve_region(qc_ctx *ctx, separator *s, int way) {
     const qc__region *r = &s->region;
     double length = fmax(s->distance, s->mesh->mean_edge_length);
-    if (way != PRESCRIBED)
-        return qc__region_solve(ctx, r, s->x, way == TRANSPORTED, length, s->z);
+    if (way != PRESCRIBED) return qc__region_solve(ctx, r, s->x, way == TRANSPORTED, length, s->z);
     prescribe(s);
     qc_status status = qc__region_rotate(ctx, r, s->theta, s->z);
     for (int32_t i = 0; !status && i < r->n; i++) {
@@ -211,14 +213,14 @@ static int32_t report(qc_ctx *ctx, const separator *s) {
     for (int32_t p = 0; p < s->mesh->n_vertices; p++) {
         if (!qc__index_excess(s->index4[p])) continue;
         size_t used = strlen(names);
-        if (left < NAMED)
-            snprintf(names + used, sizeof names - used, left ? ", %d" : "%d", (int)p);
+        if (left < NAMED) snprintf(names + used, sizeof names - used, left ? ", %d" : "%d", (int)p);
         left++;
     }
     if (left > 0)
-        qc__log(ctx, QC_LOG_WARNING,
-                "%d vertices keep an index above 1/4 or below -2/4: %s%s; quads there may degenerate",
-                (int)left, names, left > NAMED ? ", ..." : "");
+        qc__log(
+            ctx, QC_LOG_WARNING,
+            "%d vertices keep an index above 1/4 or below -2/4: %s%s; quads there may degenerate",
+            (int)left, names, left > NAMED ? ", ..." : "");
     return left;
 }
 

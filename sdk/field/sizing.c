@@ -15,7 +15,9 @@ static void sizing_destroy(qc_object *object) {
     qc__free(o);
 }
 
-static bool positive(double a) { return a > 0 && isfinite(a); }
+static bool positive(double a) {
+    return a > 0 && isfinite(a);
+}
 
 qc_status qc_sizing_create(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
                            double target_quads, const double *length, qc_sizing **out) {

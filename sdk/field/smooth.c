@@ -1,21 +1,21 @@
 /* Smoothing of a cross field by rotations alpha_t (thesis 5.2.1): minimises
  *     lambda sum_e omega_e (theta_e - alpha_s + alpha_t)^2
- *       + (1 - lambda) sum_t w_t A_t / l^2 (alpha_t + d_t)^2                                        (5.3)
- * where d_t is the angle by which the face already differs from its guide. omega is a pure number, and so is
- * w_t A_t / l^2 with l of stability.c: lambda means the same at every scale and resolution. Features
- * narrower than about l sqrt(2 lambda / ((1 - lambda) w)) are smoothed away.
+ *       + (1 - lambda) sum_t w_t A_t / l^2 (alpha_t + d_t)^2 (5.3) where d_t is the angle by which
+ * the face already differs from its guide. omega is a pure number, and so is w_t A_t / l^2 with l
+ * of stability.c: lambda means the same at every scale and resolution. Features narrower than about
+ * l sqrt(2 lambda / ((1 - lambda) w)) are smoothed away.
  *
- * The matrix (5.4) does not depend on the matching, so its factor serves all rounds: solve, rotate, match
- * again. Each step lowers the energy (a new matching makes |theta| smaller, and a turn of d by pi/2 makes
- * |d| smaller), so the rounds end. */
+ * The matrix (5.4) does not depend on the matching, so its factor serves all rounds: solve, rotate,
+ * match again. Each step lowers the energy (a new matching makes |theta| smaller, and a turn of d
+ * by pi/2 makes |d| smaller), so the rounds end. */
 #include "internal.h"
 
 #include <string.h>
 
 /* Below this lambda the smoothing term only fills the gaps between kept directions. */
 #define LAMBDA_MIN 1e-6
-/* A component whose alignment is weaker than this part of its smoothing term is solved without alignment,
- * one face fixed: otherwise the matrix is singular to working precision. */
+/* A component whose alignment is weaker than this part of its smoothing term is solved without
+ * alignment, one face fixed: otherwise the matrix is singular to working precision. */
 #define ALIGNMENT_MIN 1e-9
 
 typedef struct smoother {

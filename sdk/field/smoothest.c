@@ -1,11 +1,11 @@
 /* Smoothest cross fields, with or without a guide (power_system.h):
  *   no guide:  the eigenvector A z = mu M z of the smallest mu;
  *   guide g:   (A + t W) z = t W g^4;
- *   detail d:  then gradient flow on |z| = 1 in implicit steps of the time in which diffusion reaches d
- *              (Merriman, Bence, Osher; for cross fields Viertel and Osting (2019)): solve
- *              (A + t W + M / tau) z = M z_old / tau + t W g^4, tau = d^2 / (2 l^2), normalise, repeat.
- * A linear solution vanishes, and turns at random, where guides contradict each other; the flow closes pairs
- * of singularities nearer than about d. */
+ *   detail d:  then gradient flow on |z| = 1 in implicit steps of the time in which diffusion
+ * reaches d (Merriman, Bence, Osher; for cross fields Viertel and Osting (2019)): solve (A + t W +
+ * M / tau) z = M z_old / tau + t W g^4, tau = d^2 / (2 l^2), normalise, repeat. A linear solution
+ * vanishes, and turns at random, where guides contradict each other; the flow closes pairs of
+ * singularities nearer than about d. */
 #include "power_system.h"
 
 #include <string.h>
@@ -13,7 +13,8 @@
 enum { FLOW_STEPS = 12 };
 #define FLOW_END 1e-3 /* mean change of |z| = 1 in one step */
 
-/* The smallest shift which the pivot test of the factorisation accepts: flat surfaces have a kernel. */
+/* The smallest shift which the pivot test of the factorisation accepts: flat surfaces have a
+ * kernel. */
 static qc_status factorise_shifted(qc_ctx *ctx, qc__power_system *s) {
     qc_status status = QC_OK;
     for (double shift = 1e-9; shift < 1; shift *= 100) {
@@ -35,8 +36,8 @@ static qc_status solve_aligned(qc_ctx *ctx, qc__power_system *s, const qc_comple
 }
 
 /* One step of the flow on |z| = 1; *change: mean of |z - z_old|. */
-static qc_status flow_step(qc_ctx *ctx, qc__power_system *s, const qc_complex *guide, double inertia,
-                           double *change) {
+static qc_status flow_step(qc_ctx *ctx, qc__power_system *s, const qc_complex *guide,
+                           double inertia, double *change) {
     int32_t F = s->mesh->n_faces;
     for (int32_t t = 0; t < F; t++) {
         s->work[t] = inertia * s->mass[t] * s->z[t];
@@ -81,8 +82,8 @@ qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const double *wei
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "the alignment %g is negative or not finite",
                         alignment);
     if (!(detail >= 0) || !isfinite(detail))
-        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "the length of detail %g is negative or not finite",
-                        detail);
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
+                        "the length of detail %g is negative or not finite", detail);
     qc__power_system s;
     qc_status status = qc__power_create(ctx, mesh, weight, trusted, alignment, &s);
     if (!status) status = solve(ctx, &s, x, detail);

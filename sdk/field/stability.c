@@ -1,7 +1,7 @@
 /* Stability of principal curvature directions (thesis (5.2)):
  *     w_t = |kappa_max - kappa_min| l exp(-1/2 (|theta_1| + |theta_2| + |theta_3|)).
- * l = sqrt(area) / 100, the edge of one quad of 10000, makes it a pure number which depends on the surface
- * alone: w = 1 where the curvatures differ by that of a tube one quad in radius. */
+ * l = sqrt(area) / 100, the edge of one quad of 10000, makes it a pure number which depends on the
+ * surface alone: w = 1 where the curvatures differ by that of a tube one quad in radius. */
 #include "internal.h"
 
 qc_status qc_field_stability(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *x,
@@ -17,8 +17,7 @@ qc_status qc_field_stability(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex 
         qc__field_match(ctx, mesh, rho, x, NULL, theta);
         for (int32_t t = 0; t < mesh->n_faces; t++) {
             double turn = 0;
-            for (int32_t h = 3 * t; h < 3 * t + 3; h++)
-                turn += fabs(theta[mesh->halfedge_edge[h]]);
+            for (int32_t h = 3 * t; h < 3 * t + 3; h++) turn += fabs(theta[mesh->halfedge_edge[h]]);
             weight[t] = fabs(kappa[2 * t] - kappa[2 * t + 1]) * l * exp(-turn / 2);
         }
     }

@@ -7,8 +7,7 @@
 
 #include "sdk/base/internal.h"
 
-/* --- sorting (sort.c); linear time, stable, so results never depend on anything but the input ----
- */
+/* --- sorting (sort.c); linear time, stable, so results never depend on anything but the input */
 
 /* order[0..n): the permutation which sorts the pairs (a[i], b[i]), all of them in [0, n_keys). */
 qc_status qc__sort_pairs(qc_ctx *ctx, int32_t n_keys, int32_t n, const int32_t *a, const int32_t *b,
@@ -18,16 +17,14 @@ qc_status qc__sort_keys(qc_ctx *ctx, int32_t n, uint64_t *key, int32_t *index);
 /* A key which orders non-negative doubles (infinity included) like the numbers themselves. */
 uint64_t qc__sort_key(double x);
 
-/* --- union-find (union_find.c): parent[i] = i initially; the lowest member is the root
- * ------------ */
+/* --- union-find (union_find.c): parent[i] = i initially; the lowest member is the root */
 
 void qc__sets_init(int32_t *parent, int32_t n);
 int32_t qc__sets_find(int32_t *parent, int32_t i);
 /* False when a and b already are in one set. */
 bool qc__sets_unite(int32_t *parent, int32_t a, int32_t b);
 
-/* --- indexed binary heap (heap.c): least key first, ties by lowest index
- * -------------------------- */
+/* --- indexed binary heap (heap.c): least key first, ties by lowest index */
 
 typedef struct qc__heap {
     int32_t n;
@@ -42,8 +39,7 @@ void qc__heap_free(qc__heap *heap);
 void qc__heap_push(qc__heap *heap, int32_t i);
 int32_t qc__heap_pop(qc__heap *heap); /* heap->n > 0 */
 
-/* --- parts of qc_mesh_create
- * ----------------------------------------------------------------------- */
+/* --- parts of qc_mesh_create */
 
 /* Each fills its arrays of a mesh under construction; what was allocated before a failure is
  * released with the mesh. */
@@ -67,8 +63,7 @@ static inline void qc__halfedge_vector(const qc_mesh *m, int32_t h, double out[3
     for (int i = 0; i < 3; i++) out[i] = q[i] - p[i];
 }
 
-/* --- polygon topology (polygon_topology.c, polygon_defects.c)
- * ---------------------------------------- */
+/* --- polygon topology (polygon_topology.c, polygon_defects.c) */
 
 /* The sides of the faces (side i runs from corner i to the next one of its face), grouped by edge:
  * sides with equal end points are neighbours in `order`. */

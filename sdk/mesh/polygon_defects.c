@@ -3,8 +3,7 @@
 
 #include "sdk/mesh/internal.h"
 
-/* --- duplicates: equal vertex sets, found by sorting a commutative hash of the vertices
- * ------------- */
+/* --- duplicates: equal vertex sets, found by sorting a commutative hash of the vertices */
 
 static uint64_t mix(uint64_t x) { /* finaliser of splitmix64 (Steele, Lea, Flood 2014) */
     x += 0x9e3779b97f4a7c15u;
@@ -48,8 +47,7 @@ qc_status qc__polygon_duplicates(qc_ctx *ctx, const qc_polygon_mesh *p, int32_t 
     return status;
 }
 
-/* --- vertices ------------------------------------------------------------------------------------
- */
+/* --- vertices --------------------------------------------------------------------------------- */
 
 typedef struct vertices {
     int32_t *previous; /* by corner: previous corner of the face                                  */

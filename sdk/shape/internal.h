@@ -9,8 +9,7 @@
 
 static const double QC__PI = 3.14159265358979323846;
 
-/* --- triangle soup of patches (soup.c, weld.c)
- * ----------------------------------------------------- */
+/* --- triangle soup of patches (soup.c, weld.c) */
 
 typedef struct qc__soup {
     qc_ctx *ctx;
@@ -34,8 +33,7 @@ qc_status qc__soup_mesh(qc__soup *soup, qc_mesh **out);
 /* Number of segments so that n_patches (a n) x (b n) quads make about `faces` triangles. */
 int32_t qc__segments(int32_t faces, double quads_per_n2, int32_t least);
 
-/* --- deterministic random numbers (random.c): splitmix64
- * --------------------------------------------- */
+/* --- deterministic random numbers (random.c): splitmix64 */
 
 typedef struct qc__random {
     uint64_t state;
@@ -44,16 +42,14 @@ double qc__random_unit(qc__random *r);   /* uniform in [0, 1)   */
 double qc__random_normal(qc__random *r); /* standard normal */
 int32_t qc__random_below(qc__random *r, int32_t n);
 
-/* --- disturbances: each makes a new mesh of the same topology
- * ----------------------------------------- */
+/* --- disturbances: each makes a new mesh of the same topology */
 
 qc_status qc__shape_noise(qc_ctx *ctx, const qc_mesh *mesh, double sigma, uint64_t seed,
                           qc_mesh **out);
 qc_status qc__shape_flip(qc_ctx *ctx, const qc_mesh *mesh, uint64_t seed, qc_mesh **out);
 qc_status qc__shape_jitter(qc_ctx *ctx, const qc_mesh *mesh, uint64_t seed, qc_mesh **out);
 
-/* --- the shapes
- * ----------------------------------------------------------------------------------------- */
+/* --- the shapes */
 
 typedef void qc__shape_make(qc__soup *soup, const qc_shape_options *options);
 qc__shape_make qc__shape_sphere, qc__shape_ellipsoid, qc__shape_flat_torus, qc__shape_torus,
@@ -63,8 +59,7 @@ qc__shape_make qc__shape_sphere, qc__shape_ellipsoid, qc__shape_flat_torus, qc__
 /* Rounds off the plate of "genus" by Laplacian smoothing; replaces *mesh. */
 qc_status qc__shape_round_off(qc_ctx *ctx, const qc_shape_options *options, qc_mesh **mesh);
 
-/* --- small vectors
- * ---------------------------------------------------------------------------------------- */
+/* --- small vectors */
 
 static inline double qc__dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -151,10 +151,13 @@ typedef struct qc__lattice {
     int64_t moves, evaluations;
 } qc__lattice;
 
-/* Choices which differ by less than this part are ties and go to the lower index, so that rounding errors, which
- * depend on the scale of the input, decide nothing; halves round up for the same reason. */
+/* Choices which differ by less than this part are ties and go to the lower index, so that rounding
+ * errors, which depend on the scale of the input, decide nothing; halves round up for the same
+ * reason. */
 static const double qc__lattice_tie = 1e-9;
-static inline double qc__lattice_nearest(double x) { return floor(x + 0.5 + qc__lattice_tie); }
+static inline double qc__lattice_nearest(double x) {
+    return floor(x + 0.5 + qc__lattice_tie);
+}
 
 /* lattice.c: g from scratch; returns the energy. */
 double qc__lattice_gradient(qc__lattice *Q);

@@ -40,7 +40,8 @@ const qc_stage qc_stage_extract = {
     "and has the Euler characteristic and the boundary loops of the surface; otherwise the stage "
     "fails "
     "and names the place. Maps which fold over are refused: run qc.untangle before.\n\n"
-    "Next to boundaries which do not follow isolines cells covered by half become quads whose outer "
+    "Next to boundaries which do not follow isolines cells covered by half become quads whose "
+    "outer "
     "vertices are on the boundary.",
     "Ebke, Bommes, Campen, Kobbelt: QEx: Robust Quad Mesh Extraction (2013)",
     in,

@@ -30,7 +30,8 @@ const qc_stage qc_stage_features = {
     "qc.features",
     "1.0",
     "Find crease and boundary edges",
-    "An edge is a crease when the angle between the normals of its two faces exceeds `angle`. Boundary "
+    "An edge is a crease when the angle between the normals of its two faces exceeds `angle`. "
+    "Boundary "
     "edges are features always. Later stages turn the cross field along features and put them on "
     "integer isolines.",
     "thesis 2.1, 5.1.2",

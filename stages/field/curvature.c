@@ -14,8 +14,8 @@ typedef struct params {
 
 #define DEFAULT_QUADS 10000.0
 
-/* The averaging disk: detail below the size of a quad is noise to the quad mesh; below two edges of the
- * triangle mesh it is noise of the triangulation. */
+/* The averaging disk: detail below the size of a quad is noise to the quad mesh; below two edges of
+ * the triangle mesh it is noise of the triangulation. */
 static double disk_radius(const qc_mesh *mesh, const qc_sizing *sizing, double radius) {
     double quad = sizing ? sizing->edge_length : sqrt(mesh->area / DEFAULT_QUADS);
     return fmax(2 * mesh->mean_edge_length, radius * quad);
@@ -69,7 +69,8 @@ static const qc_port inputs[] = {
      "length of a quad, the unit of `radius`; without, that of 10000 quads"},
 };
 static const qc_port outputs[] = {
-    {"field", QC_TYPE_FACE_FIELD, 0, "principal directions with stability weights and trusted faces"},
+    {"field", QC_TYPE_FACE_FIELD, 0,
+     "principal directions with stability weights and trusted faces"},
 };
 static const char *const estimators[] = {"hildebrandt-polthier", "cohen-steiner-morvan", NULL};
 static const qc_param table[] = {
@@ -92,7 +93,8 @@ const qc_stage qc_stage_field_curvature = {
     "1.0",
     "Follow the directions of principal curvature where they are stable",
     "Estimates a shape operator per face, takes its eigenvectors and weighs them by "
-    "|k1 - k2| l exp(-1/2 sum |theta|), l = sqrt(area) / 100. The most stable part of each component is "
+    "|k1 - k2| l exp(-1/2 sum |theta|), l = sqrt(area) / 100. The most stable part of each "
+    "component is "
     "trusted; its directions are transported breadth first to the rest. Faces on feature edges are "
     "trusted in the direction of their edge. qc.field.smooth or qc.field.smoothest come next.",
     "thesis 5.1, (5.2)",

@@ -26,10 +26,12 @@ const qc_stage qc_stage_field_import = {
     "qc.field.import",
     "1.0",
     "Read a cross field from a file",
-    "Reads Directional's .rawfield (`N F`, then N vectors a face) or .rosy (F, N, then one vector a "
-    "face). Vectors are projected to their face; only their direction counts. Faces are those of the "
+    "Reads Directional's .rawfield (`N F`, then N vectors a face) or .rosy (F, N, then one vector "
+    "a "
+    "face). Vectors are projected to their face; only their direction counts. Faces are those of "
+    "the "
     "file the mesh was read from, also after repair.",
-    "DESIGN 2 (Files)",
+    "docs/files.md",
     inputs,
     outputs,
     1,

@@ -58,17 +58,20 @@ static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothed
 static const qc_param table[] = {
     QC_PARAM_REAL(params, lambda, 0.5, 0, 1, "",
                   "0 keeps the trusted directions, 1 ignores them and only smooths"),
-    QC_PARAM_REAL(params, detail, 0.5, 0, 100, "quad",
-                  "with relax: pairs of singularities nearer than about this many edge lengths of the "
-                  "quads are closed; 0 = leave them"),
-    QC_PARAM_REAL(params, separate, 0.7, 0, 100, "quad",
-                  "faces about opposite singularities nearer than this many edge lengths of the quads, or "
-                  "about an index above 1/4 or below -2/4, are solved again without alignment; 0 = off"),
+    QC_PARAM_REAL(
+        params, detail, 0.5, 0, 100, "quad",
+        "with relax: pairs of singularities nearer than about this many edge lengths of the "
+        "quads are closed; 0 = leave them"),
+    QC_PARAM_REAL(
+        params, separate, 0.7, 0, 100, "quad",
+        "faces about opposite singularities nearer than this many edge lengths of the quads, or "
+        "about an index above 1/4 or below -2/4, are solved again without alignment; 0 = off"),
     QC_PARAM_INT(params, rounds, 20, 0, 1000, "",
                  "at most so many times: solve, rotate, match again; ends when the matching stays"),
-    QC_PARAM_BOOL(params, relax, true,
-                  "start from the minimiser over x^4, which has far fewer singularities; off: from the "
-                  "field itself, whose singularities mostly stay"),
+    QC_PARAM_BOOL(
+        params, relax, true,
+        "start from the minimiser over x^4, which has far fewer singularities; off: from the "
+        "field itself, whose singularities mostly stay"),
 };
 
 const qc_stage qc_stage_field_smooth = {
@@ -76,9 +79,12 @@ const qc_stage qc_stage_field_smooth = {
     "qc.field.smooth",
     "1.0",
     "Rotate the crosses to reduce the curvature of the field",
-    "Minimises lambda sum omega_e theta_e^2 + (1 - lambda) sum w_t A_t / l^2 alpha_t^2 over rotations "
-    "alpha of the crosses, matches again and repeats. l = sqrt(area) / 100, so lambda means the same at "
-    "every scale and resolution: detail below l sqrt(2 lambda / ((1 - lambda) w)) is smoothed away. The "
+    "Minimises lambda sum omega_e theta_e^2 + (1 - lambda) sum w_t A_t / l^2 alpha_t^2 over "
+    "rotations "
+    "alpha of the crosses, matches again and repeats. l = sqrt(area) / 100, so lambda means the "
+    "same at "
+    "every scale and resolution: detail below l sqrt(2 lambda / ((1 - lambda) w)) is smoothed "
+    "away. The "
     "matrix does not depend on the matching and is factorised once.",
     "thesis 5.2, (5.3), (5.4)",
     inputs,

@@ -41,11 +41,13 @@ static const qc_port inputs[] = {
 };
 static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothest field"}};
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, alignment, 1, 0, 1e6, "",
-                  "pull of the guide's trusted faces against smoothness; 0, or no guide, ignores it"),
-    QC_PARAM_REAL(params, detail, 0.5, 0, 100, "quad",
-                  "pairs of singularities nearer than about this many edge lengths of the quads are "
-                  "closed by a gradient flow with |x| = 1; 0 = leave them"),
+    QC_PARAM_REAL(
+        params, alignment, 1, 0, 1e6, "",
+        "pull of the guide's trusted faces against smoothness; 0, or no guide, ignores it"),
+    QC_PARAM_REAL(
+        params, detail, 0.5, 0, 100, "quad",
+        "pairs of singularities nearer than about this many edge lengths of the quads are "
+        "closed by a gradient flow with |x| = 1; 0 = leave them"),
 };
 
 const qc_stage qc_stage_field_smoothest = {
@@ -53,9 +55,12 @@ const qc_stage qc_stage_field_smoothest = {
     "qc.field.smoothest",
     "1.0",
     "Compute the smoothest cross field of the surface",
-    "Minimises sum omega_e |z_t - rho^4 z_s|^2 over z = x^4 with |z| = 1 on average: an eigenvector of "
-    "the connection Laplacian, by inverse iteration. With a guide: plus alignment sum w_t A_t / l^2 "
-    "|z - guide^4|^2 over its trusted faces, one linear solve. No start field and no matching enters, so "
+    "Minimises sum omega_e |z_t - rho^4 z_s|^2 over z = x^4 with |z| = 1 on average: an "
+    "eigenvector of "
+    "the connection Laplacian, by inverse iteration. With a guide: plus alignment sum w_t A_t / "
+    "l^2 "
+    "|z - guide^4|^2 over its trusted faces, one linear solve. No start field and no matching "
+    "enters, so "
     "there are few singularities, placed by the surface.",
     "Knoeppel et al. 2013; weights of thesis (5.3)",
     inputs,

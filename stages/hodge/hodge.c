@@ -7,7 +7,8 @@ static const qc_port in[] = {
     {"sizing", QC_TYPE_SIZING, 0, "target edge length of the quads"},
 };
 static const qc_port out[] = {
-    {"map", QC_TYPE_SEAMLESS_MAP, 0, "locally integrable field and its integral on the cut surface"},
+    {"map", QC_TYPE_SEAMLESS_MAP, 0,
+     "locally integrable field and its integral on the cut surface"},
 };
 
 typedef struct params {
@@ -25,8 +26,8 @@ static qc_status run(const qc_run *r, const void *raw) {
     qc_hodge_options options = QC_HODGE_OPTIONS_INIT;
     options.stiffening = (int32_t)p->stiffening;
     qc_seamless_map *map = NULL;
-    const qc_status status =
-        qc_seamless_map_create(r->ctx, r->input(r, "matching"), r->input(r, "sizing"), &options, &map);
+    const qc_status status = qc_seamless_map_create(r->ctx, r->input(r, "matching"),
+                                                    r->input(r, "sizing"), &options, &map);
     return status == QC_OK ? r->output(r, "map", map) : status;
 }
 

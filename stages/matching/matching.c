@@ -26,8 +26,10 @@ const qc_stage qc_stage_matching = {
     "qc.matching",
     "1.0",
     "Match the crosses of neighbouring faces and find the singularities",
-    "Each edge gets the number of quarter turns which makes the crosses on its two sides as parallel as "
-    "possible. The angles that remain give the index of each vertex, a multiple of 1/4; on a closed "
+    "Each edge gets the number of quarter turns which makes the crosses on its two sides as "
+    "parallel as "
+    "possible. The angles that remain give the index of each vertex, a multiple of 1/4; on a "
+    "closed "
     "surface the indices sum to the Euler characteristic, which is checked.",
     "thesis 3.1.2, (5.1)",
     inputs,

@@ -30,8 +30,10 @@ static const qc_port inputs[] = {
     {"soup", QC_TYPE_POLYGON_MESH, 0, "polygons as a file holds them"},
 };
 static const qc_port outputs[] = {
-    {"mesh", QC_TYPE_MESH, 0, "oriented manifold triangle mesh; knows the source of each face and vertex"},
-    {"report", QC_TYPE_REPAIR_REPORT, QC_PORT_OPTIONAL, "what was changed, with the first elements"},
+    {"mesh", QC_TYPE_MESH, 0,
+     "oriented manifold triangle mesh; knows the source of each face and vertex"},
+    {"report", QC_TYPE_REPAIR_REPORT, QC_PORT_OPTIONAL,
+     "what was changed, with the first elements"},
 };
 
 const qc_stage qc_stage_repair = {
@@ -40,10 +42,12 @@ const qc_stage qc_stage_repair = {
     "1.0",
     "Turn a polygon soup into an oriented manifold triangle mesh",
     "Triangulates polygons, welds vertices with equal coordinates, drops degenerate and duplicate "
-    "faces, cuts non-manifold edges and vertices open, orients faces consistently and drops crumbs. "
-    "Every change is counted in the report; input which has no orientable surface is refused with the "
+    "faces, cuts non-manifold edges and vertices open, orients faces consistently and drops "
+    "crumbs. "
+    "Every change is counted in the report; input which has no orientable surface is refused with "
+    "the "
     "face named.",
-    "DESIGN 4 (Mesh)",
+    "stages/repair/repair.md",
     inputs,
     outputs,
     1,

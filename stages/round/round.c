@@ -47,11 +47,12 @@ const qc_stage qc_stage_round = {
     .id = "qc.round",
     .version = "1.0",
     .brief = "Rounds the periods to a lattice and closes the map by a harmonic correction.",
-    .doc = "Cone positions and the translations of the remaining cut paths are the free variables of "
-           "the map. Their period matrix P comes from one solve a variable (Sigma trick); integers "
-           "z near the optimum of 1/2 (z - t)^T P (z - t) are found by greedy rounding and local "
-           "search. The harmonic map with periods z - t is added. With a target number of quads the "
-           "map is rescaled and rounded again until its area meets it.",
+    .doc =
+        "Cone positions and the translations of the remaining cut paths are the free variables of "
+        "the map. Their period matrix P comes from one solve a variable (Sigma trick); integers "
+        "z near the optimum of 1/2 (z - t)^T P (z - t) are found by greedy rounding and local "
+        "search. The harmonic map with periods z - t is added. With a target number of quads the "
+        "map is rescaled and rounded again until its area meets it.",
     .cite = "thesis 4.2.1, 4.2.2, 6.3.1, 6.3.2",
     .in = in,
     .out = out,

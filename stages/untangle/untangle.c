@@ -1,4 +1,5 @@
-/* Stage qc.untangle: removes fold-overs, keeping transitions and lattice points (ROBUST 6). */
+/* Stage qc.untangle: removes fold-overs, keeping transitions and lattice points
+ * (docs/theory/untangling.md). */
 #include <qc/map.h>
 #include <qc/stages.h>
 #include <stdio.h>
@@ -12,7 +13,8 @@ static const qc_port in[] = {
     {"map", QC_TYPE_CORNER_MAP, 0, "integer-seamless map"},
 };
 static const qc_port out[] = {
-    {"map", QC_TYPE_CORNER_MAP, 0, "the same map on the exact grid, without fold-overs where possible"},
+    {"map", QC_TYPE_CORNER_MAP, 0,
+     "the same map on the exact grid, without fold-overs where possible"},
 };
 static const qc_param table[] = {
     QC_PARAM_BOOL(params, enabled, true, "false: only writes the map on the exact grid"),

@@ -1,4 +1,4 @@
-/* Runs the default pipeline and checks what every quad mesh must hold (DESIGN 2 and 4): only quads,
+/* Runs the default pipeline and checks what every quad mesh must hold (docs/files.md): only quads,
  * manifold, the topology of the input, no fold-over, exact seams, the number asked for, indices
  * which sum to 4 chi. */
 #ifndef QC_TESTS_GOLDEN_H

@@ -61,23 +61,26 @@ typedef struct qc_ctx qc_ctx;
 enum { QC_LOG_DEBUG = 0, QC_LOG_INFO = 1, QC_LOG_WARNING = 2, QC_LOG_ERROR = 3 };
 
 typedef struct qc_ctx_options {
-    uint32_t struct_size; /* = sizeof, set by QC_CTX_OPTIONS_INIT                                  */
-    uint32_t threads;     /* 0 = all cores; never changes a result, only its time                  */
+    uint32_t struct_size; /* = sizeof, set by QC_CTX_OPTIONS_INIT */
+    uint32_t threads; /* 0 = all cores; never changes a result, only its time                  */
     /* One allocator callback: p NULL allocates, new_size 0 frees (returns NULL), else resizes.
-     * Returned blocks need alignof(max_align_t). Called from any thread of the pool. NULL = realloc. */
+     * Returned blocks need alignof(max_align_t). Called from any thread of the pool. NULL =
+     * realloc. */
     void *(*resize)(void *user, void *p, size_t old_size, size_t new_size);
     /* One line of text without newline; stage may be "". NULL = discard. Calling thread only. */
     void (*log)(void *user, int32_t level, const char *stage, const char *text);
-    /* fraction in [0,1] of the whole run; false cancels. Calling thread only. NULL = never cancel. */
+    /* fraction in [0,1] of the whole run; false cancels. Calling thread only. NULL = never cancel.
+     */
     bool (*progress)(void *user, const char *stage, double fraction);
     void *user;
 } qc_ctx_options;
-#define QC_CTX_OPTIONS_INIT { sizeof(qc_ctx_options), 0, NULL, NULL, NULL, NULL }
+#define QC_CTX_OPTIONS_INIT                                                                        \
+    { sizeof(qc_ctx_options), 0, NULL, NULL, NULL, NULL }
 
 typedef struct qc_error {
     qc_status status;
     int64_t where; /* element the error is about (see status); -1 = none                          */
-    const char *stage, *text; /* never NULL; text is one line                                      */
+    const char *stage, *text; /* never NULL; text is one line */
 } qc_error;
 
 /* options NULL = defaults. The caller owns *out. Errors: ARGUMENT, NOMEM. Thread: any. */
@@ -98,8 +101,8 @@ QC_API uint32_t qc_ctx_threads(const qc_ctx *ctx);
  * their struct with a qc_object and calling qc_object_init. */
 typedef struct qc_object {
     const char *type;
-    void (*destroy)(struct qc_object *); /* frees the whole object; called by the last release     */
-    int32_t references;                  /* access through retain/release only                     */
+    void (*destroy)(struct qc_object *); /* frees the whole object; called by the last release */
+    int32_t references; /* access through retain/release only                     */
     int32_t reserved;
 } qc_object;
 

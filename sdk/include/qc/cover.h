@@ -2,7 +2,7 @@
  *
  * A cover is a view: a mesh and one int8 per edge; it owns and copies nothing. m_e is the number of
  * quarter turns from the face s (lower index) to t of edge e: x_t ~ i^m rho x_s, and layer l of s
- * meets layer l - m of t (DESIGN 3). Boundary edges have m = 0.
+ * meets layer l - m of t (docs/conventions.md). Boundary edges have m = 0.
  * Thread rule: everything here only reads the view. */
 #ifndef QC_COVER_H
 #define QC_COVER_H

@@ -32,8 +32,8 @@ QC_API qc_status qc_tangent_edges(qc_ctx *ctx, const qc_mesh *mesh, qc_complex *
 /* The frame in space: real_axis and imaginary_axis, 3 n_faces each (unit vectors). */
 QC_API qc_status qc_tangent_frames(qc_ctx *ctx, const qc_mesh *mesh, double *real_axis,
                                    double *imaginary_axis);
-/* Transport s -> t across interior edge e: rho_e = -e_t / e_s, |rho| = 1 (DESIGN 3); rho: n_edges,
- * 1 on the boundary. edge as above. */
+/* Transport s -> t across interior edge e: rho_e = -e_t / e_s, |rho| = 1 (docs/conventions.md);
+ * rho: n_edges, 1 on the boundary. edge as above. */
 QC_API qc_status qc_tangent_transport(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *edge,
                                       qc_complex *rho);
 
@@ -44,9 +44,9 @@ typedef struct qc_stiffness {
     int32_t *unknown; /* n_edges or n_vertices: row of the matrix, -1 = value fixed to zero */
 } qc_stiffness;
 QC_API void qc_stiffness_free(qc_stiffness *stiffness);
-/* Crouzeix-Raviart stiffness L* (1.5), (3.7), in the gauge of s (DESIGN 3). Boundary edges are no
- * unknowns. A closed component with trivial holonomy, where the kernel is the constants, gets its
- * first edge fixed. cotangent: 3 n_faces. */
+/* Crouzeix-Raviart stiffness L* (1.5), (3.7), in the gauge of s (docs/conventions.md). Boundary
+ * edges are no unknowns. A closed component with trivial holonomy, where the kernel is the
+ * constants, gets its first edge fixed. cotangent: 3 n_faces. */
 QC_API qc_status qc_stiffness_edges(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
                                     qc_stiffness **out);
 /* Conforming stiffness L (1.2.1), complex as in 3.2.3, in the gauge of qc_cover_corner_turns.
@@ -98,10 +98,10 @@ enum {
 QC_API qc_status qc_hodge_decompose(qc_ctx *ctx, const qc_cover *cover, int32_t version,
                                     const qc_complex *z, qc_complex *potential,
                                     qc_complex *copotential, qc_complex *harmonic);
-/* Removes the curl: Z^ = Z - J grad v with L* v = r (6.1), the curl-free form closest to Z, to machine
- * precision of max |Z| even on slivers. out may be z or NULL, v (n_edges) and energy may be NULL;
- * *energy = E_D = 1/2 |J grad v|^2 = 1/2 v^H L* v. Errors: NOT_POSDEF (where = edge: faces without
- * area), FAILED (where = edge: curl above 1e-9 max |Z| is left there), NOMEM, CANCELLED. */
+/* Removes the curl: Z^ = Z - J grad v with L* v = r (6.1), the curl-free form closest to Z, to
+ * machine precision of max |Z| even on slivers. out may be z or NULL, v (n_edges) and energy may be
+ * NULL; *energy = E_D = 1/2 |J grad v|^2 = 1/2 v^H L* v. Errors: NOT_POSDEF (where = edge: faces
+ * without area), FAILED (where = edge: curl above 1e-9 max |Z| is left there), NOMEM, CANCELLED. */
 QC_API qc_status qc_hodge_remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
                                       const qc_complex *z, qc_complex *out, qc_complex *v,
                                       double *energy);

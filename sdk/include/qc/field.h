@@ -1,7 +1,7 @@
 /* qc/field.h - cross fields on faces: curvature, smoothing, matching, indices, files.
  *
- * A cross is one unit complex number x per face in the frame of qc_tangent_edges; X = x, Y = J x. Signs and
- * rounding follow DESIGN 3. All objects are immutable and shared. */
+ * A cross is one unit complex number x per face in the frame of qc_tangent_edges; X = x, Y = J x.
+ * Signs and rounding follow docs/conventions.md. All objects are immutable and shared. */
 #ifndef QC_FIELD_H
 #define QC_FIELD_H
 
@@ -19,9 +19,10 @@ extern "C" {
 typedef struct qc_sizing {
     qc_object object;
     const qc_mesh *mesh;
-    double edge_length;   /* target edge length of a quad, in the units of the mesh                  */
-    double target_quads;  /* > 0: the number of quads to be met; 0: edge_length is meant literally    */
-    const double *length; /* n_faces, target edge length in each face; NULL = edge_length everywhere  */
+    double edge_length;  /* target edge length of a quad, in the units of the mesh  */
+    double target_quads; /* > 0: the number of quads to be met; 0: edge_length is meant literally */
+    const double
+        *length; /* n_faces, target edge length in each face; NULL = edge_length everywhere  */
 } qc_sizing;
 QC_API qc_status qc_sizing_create(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
                                   double target_quads, const double *length, qc_sizing **out);
@@ -29,77 +30,80 @@ QC_API qc_status qc_sizing_create(qc_ctx *ctx, const qc_mesh *mesh, double edge_
 typedef struct qc_face_field {
     qc_object object;
     const qc_mesh *mesh;
-    const qc_complex *x;   /* n_faces, |x| = 1                                                       */
-    const double *weight;  /* optional, n_faces: stability weights (5.2), dimensionless, >= 0          */
-    const uint8_t *trusted; /* optional, n_faces: 1 where the direction is to be kept                 */
+    const qc_complex *x;    /* n_faces, |x| = 1    */
+    const double *weight;   /* optional, n_faces: stability weights (5.2), dimensionless, >= 0   */
+    const uint8_t *trusted; /* optional, n_faces: 1 where the direction is to be kept */
 } qc_face_field;
-/* Copies its arrays (weight, trusted may be NULL), normalises x, retains the mesh. ARGUMENT with where =
- * face when x is zero or not finite. */
+/* Copies its arrays (weight, trusted may be NULL), normalises x, retains the mesh. ARGUMENT with
+ * where = face when x is zero or not finite. */
 QC_API qc_status qc_face_field_create(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *x,
                                       const double *weight, const uint8_t *trusted,
                                       qc_face_field **out);
 
 enum { QC_CURVATURE_HILDEBRANDT_POLTHIER = 0, QC_CURVATURE_COHEN_STEINER_MORVAN = 1 };
-/* Principal curvature directions (thesis 5.1.1): x = direction of the larger |curvature|; kappa (2 n_faces,
- * may be NULL) = principal curvatures, that along x first. radius: of the averaging disk, in the units of
- * the mesh (Cohen-Steiner and Morvan only); it shrinks where the disk would hold more than 200 faces. */
+/* Principal curvature directions (thesis 5.1.1): x = direction of the larger |curvature|; kappa (2
+ * n_faces, may be NULL) = principal curvatures, that along x first. radius: of the averaging disk,
+ * in the units of the mesh (Cohen-Steiner and Morvan only); it shrinks where the disk would hold
+ * more than 200 faces. */
 QC_API qc_status qc_field_curvature(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator,
                                     double radius, qc_complex *x, double *kappa);
-/* Stability weights (5.2): |k1 - k2| l exp(-1/2 sum |theta|) with l = sqrt(mesh->area) / 100, the edge of one
- * quad of 10000: pure numbers which depend on the surface, not on its scale or resolution. weight: n_faces;
- * kappa: 2 n_faces. */
+/* Stability weights (5.2): |k1 - k2| l exp(-1/2 sum |theta|) with l = sqrt(mesh->area) / 100, the
+ * edge of one quad of 10000: pure numbers which depend on the surface, not on its scale or
+ * resolution. weight: n_faces; kappa: 2 n_faces. */
 QC_API qc_status qc_field_stability(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *x,
                                     const double *kappa, double *weight);
-/* Turns the cross of each face with a feature edge along that edge, trusts it and raises its weight to
- * `strength` (soft alignment to creases and boundaries). edge: n_edges flags as in qc_features, nonzero =
- * feature; NULL = the boundary. x, weight, trusted (n_faces each) are changed in place at these faces. */
+/* Turns the cross of each face with a feature edge along that edge, trusts it and raises its weight
+ * to `strength` (soft alignment to creases and boundaries). edge: n_edges flags as in qc_features,
+ * nonzero = feature; NULL = the boundary. x, weight, trusted (n_faces each) are changed in place at
+ * these faces. */
 QC_API qc_status qc_field_align(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                 double strength, qc_complex *x, double *weight, uint8_t *trusted);
-/* Keeps the most stable faces of each component which make up `fraction` of its area, and those already
- * flagged in trusted (in and out: clear it first), and extends their directions to the other faces breadth
- * first by parallel transport (thesis 5.1.2). Faces of weight < 1e-6 are flat and never kept; a component
- * without any kept face starts from its boundary edges, else from its first edge. x is changed in place. */
+/* Keeps the most stable faces of each component which make up `fraction` of its area, and those
+ * already flagged in trusted (in and out: clear it first), and extends their directions to the
+ * other faces breadth first by parallel transport (thesis 5.1.2). Faces of weight < 1e-6 are flat
+ * and never kept; a component without any kept face starts from its boundary edges, else from its
+ * first edge. x is changed in place. */
 QC_API qc_status qc_field_extend(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                  double fraction, qc_complex *x, uint8_t *trusted);
-/* Smoothing (5.3), (5.4): rotates each cross by the minimiser of lambda E_S + (1 - lambda) E_A for the
- * matching of x, then re-matches; `rounds` times or until the matching no longer changes. E_A pulls the
- * trusted faces towards guide (NULL = the x given) with w_t A_t / l^2 (l as in qc_field_stability). weight
- * NULL = 1; trusted NULL = all faces; both NULL: lambda acts as 1. x in place. The result is a local minimum:
- * start from qc_field_smoothest with alignment (1 - lambda) / lambda for few singularities. Errors: ARGUMENT,
- * NOMEM, CANCELLED. */
+/* Smoothing (5.3), (5.4): rotates each cross by the minimiser of lambda E_S + (1 - lambda) E_A for
+ * the matching of x, then re-matches; `rounds` times or until the matching no longer changes. E_A
+ * pulls the trusted faces towards guide (NULL = the x given) with w_t A_t / l^2 (l as in
+ * qc_field_stability). weight NULL = 1; trusted NULL = all faces; both NULL: lambda acts as 1. x in
+ * place. The result is a local minimum: start from qc_field_smoothest with alignment (1 - lambda) /
+ * lambda for few singularities. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *guide,
                                  const double *weight, const uint8_t *trusted, double lambda,
                                  int32_t rounds, qc_complex *x);
-/* Smoothest field: in each component the eigenvector of the smallest eigenvalue of the connection Laplacian
- * on fourth powers x^4, by inverse iteration on its factor. With alignment > 0 and weight or trusted given:
- * minimiser of E_S(x^4) + alignment sum w_t A_t / l^2 |x^4 - guide^4|^2 over the trusted faces (in: guide,
- * out: field); components without any trusted face get the eigenvector. detail > 0, a length in the units of
- * the mesh: then gradient flow with |x| = 1 kept, which closes pairs of singularities nearer than about that;
- * 0 = off. Errors: ARGUMENT, NOMEM, CANCELLED. */
+/* Smoothest field: in each component the eigenvector of the smallest eigenvalue of the connection
+ * Laplacian on fourth powers x^4, by inverse iteration on its factor. With alignment > 0 and weight
+ * or trusted given: minimiser of E_S(x^4) + alignment sum w_t A_t / l^2 |x^4 - guide^4|^2 over the
+ * trusted faces (in: guide, out: field); components without any trusted face get the eigenvector.
+ * detail > 0, a length in the units of the mesh: then gradient flow with |x| = 1 kept, which closes
+ * pairs of singularities nearer than about that; 0 = off. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                     const uint8_t *trusted, double alignment, double detail,
                                     qc_complex *x);
 
-/* Solves again without alignment around crowded vertices: those of index4 >= 2 or <= -3, and opposite
- * singularities nearer than `distance` (units of the mesh; 0 = none) or, within twice that, on one edge.
- * Region by region a result is kept when it is less crowded; its faces lose their flag in trusted (n_faces,
- * in and out, may be NULL). Vertices whose index stays are named by a warning; *left (may be NULL) counts
- * them. x in place. Errors: ARGUMENT, NOMEM, CANCELLED. */
+/* Solves again without alignment around crowded vertices: those of index4 >= 2 or <= -3, and
+ * opposite singularities nearer than `distance` (units of the mesh; 0 = none) or, within twice
+ * that, on one edge. Region by region a result is kept when it is less crowded; its faces lose
+ * their flag in trusted (n_faces, in and out, may be NULL). Vertices whose index stays are named by
+ * a warning; *left (may be NULL) counts them. x in place. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
                                    uint8_t *trusted, qc_complex *x, int32_t *left);
 
-/* Matching and indices of a cross field (DESIGN 3). */
+/* Matching and indices of a cross field (docs/conventions.md). */
 typedef struct qc_matching {
     qc_object object;
     const qc_face_field *field; /* retained */
-    const int8_t *m;            /* n_edges: a = arg(x_t / (rho x_s)), m = round(2 a / pi); 0 on boundary */
-    const double *theta;        /* n_edges: a - m pi / 2                                            */
-    const int32_t *index4;      /* n_vertices: index in quarters; 0 on the boundary                 */
-    int32_t n_singular;         /* interior vertices with index4 != 0                                */
-    int32_t index4_sum;         /* = 4 chi on a closed mesh (checked)                               */
+    const int8_t *m;     /* n_edges: a = arg(x_t / (rho x_s)), m = round(2 a / pi); 0 on boundary */
+    const double *theta; /* n_edges: a - m pi / 2                                            */
+    const int32_t *index4; /* n_vertices: index in quarters; 0 on the boundary                 */
+    int32_t n_singular;    /* interior vertices with index4 != 0                                */
+    int32_t index4_sum;    /* = 4 chi on a closed mesh (checked)                               */
 } qc_matching;
-/* m NULL: the straightest matching; otherwise the given one (n_edges; any turns). FAILED when the indices of
- * a closed mesh do not sum to 4 chi (cannot happen for finite fields). */
+/* m NULL: the straightest matching; otherwise the given one (n_edges; any turns). FAILED when the
+ * indices of a closed mesh do not sum to 4 chi (cannot happen for finite fields). */
 QC_API qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
                                     qc_matching **out);
 
@@ -108,20 +112,22 @@ QC_API qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, con
  * with the cones on lattice points would have to fold there. Faces stay in their plane with their
  * cross, weight, flag and length; old vertices keep their numbers and indices, midpoints have index
  * 0. source_face and source_vertex as of the old mesh (its own numbers when it has none), -1 at
- * midpoints. Nothing to split: the same objects, retained. Errors: ARGUMENT (sizing of another mesh),
- * NOMEM, CANCELLED. */
+ * midpoints. Nothing to split: the same objects, retained. Errors: ARGUMENT (sizing of another
+ * mesh), NOMEM, CANCELLED. */
 QC_API qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching,
                                    const qc_sizing *sizing, qc_mesh **mesh, qc_sizing **sizing_out,
                                    qc_matching **matching_out);
 
-/* Directional's .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a face), recognised
- * by content; N = 4 (N = 1 or 2 also make a cross). Vectors are projected to the face; four of them are
- * averaged as fourth powers. F and the order are those of the file the mesh came from: faces are looked up
- * through mesh->source_face when present. path "-" = stdin. Errors: IO; INPUT with where = line: wrong counts,
- * other N, not a number, a vector which is zero in its face. */
+/* Directional's .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a face),
+ * recognised by content; N = 4 (N = 1 or 2 also make a cross). Vectors are projected to the face;
+ * four of them are averaged as fourth powers. F and the order are those of the file the mesh came
+ * from: faces are looked up through mesh->source_face when present. path "-" = stdin. Errors: IO;
+ * INPUT with where = line: wrong counts, other N, not a number, a vector which is zero in its face.
+ */
 QC_API qc_status qc_face_field_read(qc_ctx *ctx, const qc_mesh *mesh, const char *path,
                                     qc_face_field **out);
-/* Writes .rosy when the path ends so, else .rawfield, in the mesh's own face order, through a temporary. */
+/* Writes .rosy when the path ends so, else .rawfield, in the mesh's own face order, through a
+ * temporary. */
 QC_API qc_status qc_face_field_write(qc_ctx *ctx, const qc_face_field *field, const char *path);
 
 #ifdef __cplusplus

@@ -3,11 +3,12 @@
  * qc_polygon_mesh: what files hold, and the type of quad results. qc_mesh: an oriented manifold
  * triangle mesh, possibly with boundary and several components, as compact index arrays.
  *
- * Index conventions (DESIGN 3). Faces are counter-clockwise. Corner and halfedge k of face t share the
- * number 3 t + k: halfedge 3t+k is OPPOSITE corner k and runs from corner k+1 to corner k+2 (mod 3).
- * An interior edge has faces s (lower index) and t (higher index); its halfedges are
- * edge_halfedge[2e] in s and edge_halfedge[2e+1] in t; for a boundary edge the second is -1.
- * Thread rule: objects are immutable and shared freely; every call uses its context's thread. */
+ * Index conventions (docs/conventions.md). Faces are counter-clockwise. Corner and halfedge k of
+ * face t share the number 3 t + k: halfedge 3t+k is OPPOSITE corner k and runs from corner k+1 to
+ * corner k+2 (mod 3). An interior edge has faces s (lower index) and t (higher index); its
+ * halfedges are edge_halfedge[2e] in s and edge_halfedge[2e+1] in t; for a boundary edge the second
+ * is -1. Thread rule: objects are immutable and shared freely; every call uses its context's
+ * thread. */
 #ifndef QC_MESH_H
 #define QC_MESH_H
 
@@ -28,16 +29,16 @@ extern "C" {
 typedef struct qc_polygon_mesh {
     qc_object object;
     int32_t n_vertices, n_faces, n_corners, n_uvs, n_lines;
-    double *position;     /* 3 n_vertices                                                          */
-    int32_t *face_offset; /* n_faces + 1; face f has corners face_offset[f] .. face_offset[f+1]-1     */
-    int32_t *face_vertex; /* n_corners, 0-based                                                    */
-    double *uv;           /* optional, 2 n_uvs                                                     */
-    int32_t *corner_uv;   /* optional, n_corners; -1 = none                                        */
-    int32_t *line;        /* optional, 2 n_lines: OBJ `l` segments as vertex pairs                  */
-    int32_t *face_line;   /* optional, n_faces: line (text) or 1-based element in the file          */
-    int32_t *face_group;  /* optional, n_faces: OBJ g/usemtl number, 0 = none                       */
-    int32_t *source_face; /* optional, n_vertices: face of the mesh it was made from ...            */
-    double *source_barycentric; /* ... and 3 n_vertices barycentric coordinates in it                */
+    double *position; /* 3 n_vertices                                                          */
+    int32_t *face_offset; /* n_faces + 1; face f has corners face_offset[f] .. face_offset[f+1]-1 */
+    int32_t *face_vertex; /* n_corners, 0-based */
+    double *uv;         /* optional, 2 n_uvs                                                     */
+    int32_t *corner_uv; /* optional, n_corners; -1 = none                                        */
+    int32_t *line;      /* optional, 2 n_lines: OBJ `l` segments as vertex pairs                  */
+    int32_t *face_line; /* optional, n_faces: line (text) or 1-based element in the file          */
+    int32_t *face_group;  /* optional, n_faces: OBJ g/usemtl number, 0 = none        */
+    int32_t *source_face; /* optional, n_vertices: face of the mesh it was made from ...       */
+    double *source_barycentric; /* ... and 3 n_vertices barycentric coordinates in it */
 } qc_polygon_mesh;
 
 /* Allocates zeroed arrays for the given sizes (n_uvs > 0 also makes corner_uv; flags add optional
@@ -48,32 +49,32 @@ QC_API qc_status qc_polygon_mesh_create(qc_ctx *ctx, int32_t n_vertices, int32_t
                                         uint32_t flags, qc_polygon_mesh **out);
 
 /* Reads OBJ, OFF, PLY (ASCII, binary little and big endian) or STL (ASCII, binary); the format is
- * recognised by content, then by extension. path "-" = stdin. Errors: IO; INPUT with the line (text)
- * or byte/element (binary) in where and in the text: empty, truncated, not a number, non-finite
- * coordinate, index out of range, fewer than 3 corners, no faces. */
+ * recognised by content, then by extension. path "-" = stdin. Errors: IO; INPUT with the line
+ * (text) or byte/element (binary) in where and in the text: empty, truncated, not a number,
+ * non-finite coordinate, index out of range, fewer than 3 corners, no faces. */
 QC_API qc_status qc_polygon_mesh_read(qc_ctx *ctx, const char *path, qc_polygon_mesh **out);
 /* The same from memory; name is used for messages and for the extension (may be NULL). */
 QC_API qc_status qc_polygon_mesh_parse(qc_ctx *ctx, const void *data, size_t size, const char *name,
                                        qc_polygon_mesh **out);
-/* Writes OBJ (path "-" = stdout) through a temporary and a rename; numbers round-trip; vt per corner
- * when the mesh has uvs. comment (may be NULL) becomes `#` lines at the top. */
+/* Writes OBJ (path "-" = stdout) through a temporary and a rename; numbers round-trip; vt per
+ * corner when the mesh has uvs. comment (may be NULL) becomes `#` lines at the top. */
 QC_API qc_status qc_polygon_mesh_write(qc_ctx *ctx, const qc_polygon_mesh *mesh, const char *path,
                                        const char *comment);
-/* Disjoint union of n meshes. Source faces of mesh i are mapped through source_map[i] (source_map or
- * an entry of it NULL = no change). An optional array exists in the result when some part has it;
- * elsewhere it says "none" (-1 for uvs and source faces, 0 for lines and groups). */
+/* Disjoint union of n meshes. Source faces of mesh i are mapped through source_map[i] (source_map
+ * or an entry of it NULL = no change). An optional array exists in the result when some part has
+ * it; elsewhere it says "none" (-1 for uvs and source faces, 0 for lines and groups). */
 QC_API qc_status qc_polygon_mesh_merge(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *const *parts,
                                        const int32_t *const *source_map, qc_polygon_mesh **out);
 
 /* Combinatorial check of any polygon mesh. */
 typedef struct qc_polygon_topology {
     int32_t components, boundary_loops, euler, non_quads;
-    int32_t irregular;             /* interior vertices of valence other than 4                     */
-    int32_t non_manifold_edges;    /* edges with three or more faces                                */
-    int32_t non_manifold_vertices; /* vertices whose faces form more than one fan                   */
-    int32_t inconsistent_edges;    /* edges with two faces which run through it in one direction    */
+    int32_t irregular;          /* interior vertices of valence other than 4                     */
+    int32_t non_manifold_edges; /* edges with three or more faces                                */
+    int32_t non_manifold_vertices; /* vertices whose faces form more than one fan */
+    int32_t inconsistent_edges; /* edges with two faces which run through it in one direction    */
     int32_t duplicate_faces, degenerate_faces, unreferenced_vertices;
-    int32_t first_bad_element;     /* a vertex or face of the first defect above, -1 = none          */
+    int32_t first_bad_element; /* a vertex or face of the first defect above, -1 = none          */
 } qc_polygon_topology;
 QC_API qc_status qc_polygon_mesh_topology(qc_ctx *ctx, const qc_polygon_mesh *mesh,
                                           qc_polygon_topology *out);
@@ -83,27 +84,28 @@ QC_API qc_status qc_polygon_mesh_topology(qc_ctx *ctx, const qc_polygon_mesh *me
 typedef struct qc_mesh {
     qc_object object;
     int32_t n_vertices, n_faces, n_edges, n_boundary_edges;
-    int32_t n_components, n_boundary_loops, euler; /* euler = V - E + F of the whole mesh            */
-    int32_t genus;                 /* sum over the components                                       */
-    double diagonal;               /* of the bounding box                                           */
-    double area, mean_edge_length; /* of the surface                                                */
-    const double *position;        /* 3 n_vertices                                                  */
-    const int32_t *face_vertex;    /* 3 n_faces                                                     */
-    const int32_t *twin;           /* 3 n_faces: opposite halfedge, -1 on the boundary              */
-    const int32_t *halfedge_edge;  /* 3 n_faces: edge of a halfedge                                 */
-    const int32_t *edge_halfedge;  /* 2 n_edges, see above                                          */
-    const int32_t *vertex_corner;  /* n_vertices: the corner from which qc_corner_ccw visits the whole
-                                      fan; on the boundary the clockwise-most one                    */
-    const int32_t *edge_vertex;    /* 2 n_edges: start and end of edge_halfedge[2e]                  */
-    const int32_t *face_component; /* n_faces                                                       */
-    const int32_t *source_face, *source_vertex; /* optional: numbers in the input the mesh came from  */
+    int32_t n_components, n_boundary_loops, euler; /* euler = V - E + F of the whole mesh */
+    int32_t genus;   /* sum over the components                                       */
+    double diagonal; /* of the bounding box                                           */
+    double area, mean_edge_length; /* of the surface */
+    const double *position;     /* 3 n_vertices                                                  */
+    const int32_t *face_vertex; /* 3 n_faces                                                     */
+    const int32_t *twin;        /* 3 n_faces: opposite halfedge, -1 on the boundary              */
+    const int32_t *halfedge_edge; /* 3 n_faces: edge of a halfedge */
+    const int32_t *edge_halfedge; /* 2 n_edges, see above */
+    const int32_t *vertex_corner; /* n_vertices: the corner from which qc_corner_ccw visits the
+                                     whole fan; on the boundary the clockwise-most one */
+    const int32_t *edge_vertex; /* 2 n_edges: start and end of edge_halfedge[2e]                  */
+    const int32_t *face_component; /* n_faces */
+    const int32_t *source_face,
+        *source_vertex; /* optional: numbers in the input the mesh came from  */
 } qc_mesh;
 
 /* Builds the connectivity of an oriented manifold triangle list (arrays are copied). Errors:
  * ARGUMENT (index out of range, a vertex twice in a face; where = face; a coordinate which is not
  * finite, where = vertex), NON_MANIFOLD (where = face of
- * an edge with three faces or inconsistent orientation, or a vertex with two fans; the text names it;
- * unreferenced vertices are ARGUMENT with where = vertex), NOMEM. */
+ * an edge with three faces or inconsistent orientation, or a vertex with two fans; the text names
+ * it; unreferenced vertices are ARGUMENT with where = vertex), NOMEM. */
 QC_API qc_status qc_mesh_create(qc_ctx *ctx, int32_t n_vertices, const double *position,
                                 int32_t n_faces, const int32_t *face_vertex, qc_mesh **out);
 /* The same with source numbers attached (either may be NULL; copied). */
@@ -111,12 +113,17 @@ QC_API qc_status qc_mesh_create_from(qc_ctx *ctx, int32_t n_vertices, const doub
                                      int32_t n_faces, const int32_t *face_vertex,
                                      const int32_t *source_vertex, const int32_t *source_face,
                                      qc_mesh **out);
-/* One connected component as a mesh of its own; source_face/vertex refer to the numbers in `mesh`. */
+/* One connected component as a mesh of its own; source_face/vertex refer to the numbers in `mesh`.
+ */
 QC_API qc_status qc_mesh_component(qc_ctx *ctx, const qc_mesh *mesh, int32_t component,
                                    qc_mesh **out);
 
-static inline int32_t qc_next(int32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-static inline int32_t qc_prev(int32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+static inline int32_t qc_next(int32_t h) {
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+static inline int32_t qc_prev(int32_t h) {
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
 static inline int32_t qc_halfedge_start(const qc_mesh *m, int32_t h) {
     return m->face_vertex[qc_next(h)];
 }
@@ -138,8 +145,8 @@ static inline bool qc_vertex_on_boundary(const qc_mesh *m, int32_t v) {
 }
 
 /* Boundary loops: loop i is vertices loop_vertex[loop_offset[i]] .. [loop_offset[i+1]-1], each loop
- * with the surface on its left, loops ordered by their smallest halfedge. Arrays: n_boundary_loops + 1
- * and n_boundary_edges entries, caller-allocated. */
+ * with the surface on its left, loops ordered by their smallest halfedge. Arrays: n_boundary_loops
+ * + 1 and n_boundary_edges entries, caller-allocated. */
 QC_API qc_status qc_mesh_boundary_loops(qc_ctx *ctx, const qc_mesh *mesh, int32_t *loop_offset,
                                         int32_t *loop_vertex);
 
@@ -151,24 +158,24 @@ QC_API qc_status qc_mesh_boundary_loops(qc_ctx *ctx, const qc_mesh *mesh, int32_
 QC_API qc_status qc_mesh_geometry(qc_ctx *ctx, const qc_mesh *mesh, double *length, double *area,
                                   double *cotangent, double *angle, double *normal, double *gauss);
 
-/* --- shortest paths and cut graphs (thesis 1.3) -------------------------------------------------- */
+/* --- shortest paths and cut graphs (thesis 1.3) ----------------------------------------------- */
 
 /* Dijkstra from all vertices with source[v] != 0. weight: n_edges > 0, NULL = Euclidean length.
  * distance: n_vertices (infinity when not reached); predecessor_edge: n_vertices, -1 at sources and
- * where not reached; either may be NULL. Errors: ARGUMENT (weight not positive, where = edge), NOMEM,
- * CANCELLED. */
+ * where not reached; either may be NULL. Errors: ARGUMENT (weight not positive, where = edge),
+ * NOMEM, CANCELLED. */
 QC_API qc_status qc_mesh_shortest_paths(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                         const uint8_t *source, double *distance,
                                         int32_t *predecessor_edge);
 
 /* Shortest cut graph through a set of base vertices (Algorithm 1.16 with the extension to base
- * vertices and boundaries). base: n_vertices flags; boundary vertices are base vertices of their own
- * accord; a closed component without any gets its lowest-numbered vertex. cut: n_edges flags, 1 on
- * edges of the graph. Boundary edges are never flagged. Every component minus its cut edges is a
- * topological disk (annuli of a boundary are opened too), and every base vertex is on the graph. The
- * one exception: the graph of a sphere with a single base vertex (or none) is empty, so it stays
- * closed; who needs a disk there gives two base vertices. base NULL = none. weight as above. Errors:
- * ARGUMENT (weight not positive, where = edge), NOMEM, CANCELLED. */
+ * vertices and boundaries). base: n_vertices flags; boundary vertices are base vertices of their
+ * own accord; a closed component without any gets its lowest-numbered vertex. cut: n_edges flags, 1
+ * on edges of the graph. Boundary edges are never flagged. Every component minus its cut edges is a
+ * topological disk (annuli of a boundary are opened too), and every base vertex is on the graph.
+ * The one exception: the graph of a sphere with a single base vertex (or none) is empty, so it
+ * stays closed; who needs a disk there gives two base vertices. base NULL = none. weight as above.
+ * Errors: ARGUMENT (weight not positive, where = edge), NOMEM, CANCELLED. */
 QC_API qc_status qc_mesh_cut_graph(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                                    const uint8_t *base, uint8_t *cut);
 
@@ -178,9 +185,10 @@ enum { QC_FEATURE_BOUNDARY = 1, QC_FEATURE_CREASE = 2, QC_FEATURE_LINE = 4 };
 typedef struct qc_features {
     qc_object object;
     const qc_mesh *mesh; /* retained                                                              */
-    int32_t n_feature_edges, n_creases, n_corners; /* corners: feature vertices of feature degree != 2 */
-    const uint8_t *edge;   /* n_edges: QC_FEATURE_... flags                                          */
-    const uint8_t *vertex; /* n_vertices: number of feature edges at it, saturated at 255            */
+    int32_t n_feature_edges, n_creases,
+        n_corners;         /* corners: feature vertices of feature degree != 2 */
+    const uint8_t *edge;   /* n_edges: QC_FEATURE_... flags   */
+    const uint8_t *vertex; /* n_vertices: number of feature edges at it, saturated at 255 */
 } qc_features;
 /* Crease: dihedral angle above `angle` (radians). line: pairs of mesh vertices (may be NULL) whose
  * edges are features; pairs which are no edge are ignored and counted in the log. */
@@ -191,24 +199,24 @@ QC_API qc_status qc_features_detect(qc_ctx *ctx, const qc_mesh *mesh, double ang
 
 /* Kinds of repair, in the order they are made. */
 enum {
-    QC_REPAIR_TRIANGULATED = 0,    /* polygons with more than 3 corners                             */
-    QC_REPAIR_WELDED,              /* vertices with equal coordinates merged                        */
-    QC_REPAIR_DEGENERATE,          /* faces with a repeated vertex dropped                          */
-    QC_REPAIR_DUPLICATE,           /* faces with the same vertices dropped                          */
-    QC_REPAIR_NON_MANIFOLD_EDGE,   /* edges with three or more faces cut open                       */
-    QC_REPAIR_ORIENTED,            /* faces turned round                                            */
-    QC_REPAIR_NON_MANIFOLD_VERTEX, /* vertices split, one per fan                                   */
-    QC_REPAIR_ZERO_AREA,           /* needles and caps removed by a collapse or a flip              */
-    QC_REPAIR_UNREFERENCED,        /* vertices without faces dropped                                */
-    QC_REPAIR_SMALL_COMPONENT,     /* components with fewer than 4 faces dropped                    */
+    QC_REPAIR_TRIANGULATED = 0,  /* polygons with more than 3 corners                             */
+    QC_REPAIR_WELDED,            /* vertices with equal coordinates merged                        */
+    QC_REPAIR_DEGENERATE,        /* faces with a repeated vertex dropped                          */
+    QC_REPAIR_DUPLICATE,         /* faces with the same vertices dropped                          */
+    QC_REPAIR_NON_MANIFOLD_EDGE, /* edges with three or more faces cut open                       */
+    QC_REPAIR_ORIENTED,          /* faces turned round                                            */
+    QC_REPAIR_NON_MANIFOLD_VERTEX, /* vertices split, one per fan */
+    QC_REPAIR_ZERO_AREA,       /* needles and caps removed by a collapse or a flip              */
+    QC_REPAIR_UNREFERENCED,    /* vertices without faces dropped                                */
+    QC_REPAIR_SMALL_COMPONENT, /* components with fewer than 4 faces dropped                    */
     QC_REPAIR_KINDS
 };
 typedef struct qc_repair_report {
     qc_object object;
     int32_t count[QC_REPAIR_KINDS];
-    int32_t first[QC_REPAIR_KINDS][4]; /* first elements (input numbers), -1 = fewer               */
+    int32_t first[QC_REPAIR_KINDS][4]; /* first elements (input numbers), -1 = fewer */
 } qc_repair_report;
-QC_API const char *qc_repair_kind_name(int32_t kind); /* "polygons triangulated", ...                */
+QC_API const char *qc_repair_kind_name(int32_t kind); /* "polygons triangulated", ... */
 
 /* Turns a polygon soup into an oriented manifold mesh, or refuses. Every change is counted in the
  * report. Errors: INPUT (where = face; the text says why and the way out): no face left, not

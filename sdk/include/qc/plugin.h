@@ -14,8 +14,8 @@
 extern "C" {
 #endif
 
-#define QC_ABI_MAJOR 1 /* bump = new symbol name below; old plugins are not found, not crashed    */
-#define QC_ABI_MINOR 0 /* bump = members appended; struct_size says which exist                   */
+#define QC_ABI_MAJOR 1 /* bump = new symbol name below; old plugins are not found, not crashed */
+#define QC_ABI_MINOR 0 /* bump = members appended; struct_size says which exist */
 
 typedef struct qc_host {
     uint32_t struct_size;

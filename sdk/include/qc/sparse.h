@@ -6,7 +6,8 @@
  * present. The factor is P A P^T = L D L^H with unit lower triangular L and real positive D, stored
  * by supernodes. Numbering in every call is the caller's; the permutation stays inside.
  * Thread rule of the whole header: a qc_symbolic is immutable and may be shared; a qc_factor may be
- * used by several threads at once as long as no call modifies it; a qc_ctx belongs to one thread. */
+ * used by several threads at once as long as no call modifies it; a qc_ctx belongs to one thread.
+ */
 #ifndef QC_SPARSE_H
 #define QC_SPARSE_H
 
@@ -32,36 +33,39 @@ typedef struct qc_symmetric {
     const double *val;
 } qc_symmetric;
 
-typedef struct qc_symbolic qc_symbolic; /* permutation, elimination tree, supernodes; immutable      */
-typedef struct qc_factor qc_factor;     /* numeric factor; the one mutable object of the SDK         */
+typedef struct qc_symbolic qc_symbolic; /* permutation, elimination tree, supernodes; immutable */
+typedef struct qc_factor qc_factor; /* numeric factor; the one mutable object of the SDK         */
 
 enum { QC_ORDER_AMD = 0, QC_ORDER_NATURAL = 1, QC_ORDER_GIVEN = 2 };
 
 typedef struct qc_analyze_options {
     uint32_t struct_size;
-    int32_t ordering;           /* QC_ORDER_...                                                    */
-    const int32_t *permutation; /* QC_ORDER_GIVEN: n entries, permutation[k] = row eliminated k-th   */
+    int32_t ordering; /* QC_ORDER_...                                                    */
+    const int32_t
+        *permutation; /* QC_ORDER_GIVEN: n entries, permutation[k] = row eliminated k-th   */
 } qc_analyze_options;
-#define QC_ANALYZE_OPTIONS_INIT { sizeof(qc_analyze_options), 0, NULL }
+#define QC_ANALYZE_OPTIONS_INIT                                                                    \
+    { sizeof(qc_analyze_options), 0, NULL }
 
 typedef struct qc_symbolic_info {
     uint32_t struct_size;
     int32_t n, supernodes, largest_front;
-    int64_t nnz_l;  /* entries of L including the diagonal, without padding                         */
-    int64_t stored; /* entries stored, with the zeros of relaxed supernodes                         */
-    double flops;   /* multiply-add pairs counted as 2 real flops for the real case; x4 complex     */
-    int64_t bytes_complex, bytes_real; /* memory of a factor                                        */
+    int64_t nnz_l;  /* entries of L including the diagonal, without padding  */
+    int64_t stored; /* entries stored, with the zeros of relaxed supernodes */
+    double flops; /* multiply-add pairs counted as 2 real flops for the real case; x4 complex     */
+    int64_t bytes_complex, bytes_real; /* memory of a factor */
 } qc_symbolic_info;
-#define QC_SYMBOLIC_INFO_INIT { sizeof(qc_symbolic_info), 0, 0, 0, 0, 0, 0.0, 0, 0 }
+#define QC_SYMBOLIC_INFO_INIT                                                                      \
+    { sizeof(qc_symbolic_info), 0, 0, 0, 0, 0, 0.0, 0, 0 }
 
 /* Symbolic analysis of the pattern (values are not read; val may be NULL). options NULL = AMD.
- * Errors: ARGUMENT (where = column whose rows are unsorted, out of range or without diagonal; or the
- * bad permutation entry), NOMEM, CANCELLED. */
+ * Errors: ARGUMENT (where = column whose rows are unsorted, out of range or without diagonal; or
+ * the bad permutation entry), NOMEM, CANCELLED. */
 QC_API qc_status qc_analyze(qc_ctx *ctx, const qc_hermitian *A, const qc_analyze_options *options,
                             qc_symbolic **out);
 QC_API qc_status qc_analyze_real(qc_ctx *ctx, const qc_symmetric *A,
                                  const qc_analyze_options *options, qc_symbolic **out);
-QC_API void qc_symbolic_free(qc_symbolic *S); /* factors keep what they need: may be freed first    */
+QC_API void qc_symbolic_free(qc_symbolic *S); /* factors keep what they need: may be freed first */
 QC_API void qc_symbolic_get_info(const qc_symbolic *S, qc_symbolic_info *info);
 
 /* Numeric factorisation; A must have the pattern that was analysed (or a subset of it).
@@ -108,7 +112,8 @@ QC_API qc_status qc_updown_real(qc_ctx *ctx, qc_factor *F, int sigma, int32_t nw
 
 /* Matching flip (thesis 6.2.1): A <- A + D where D couples row k with the rows l and m only:
  * D(k,l) += dl, D(k,m) += dm and the conjugates. Rank 2, one positive and one negative eigenvalue,
- * applied as update before downdate. On any error F is bit for bit as before. Errors as qc_updown. */
+ * applied as update before downdate. On any error F is bit for bit as before. Errors as qc_updown.
+ */
 QC_API qc_status qc_flip(qc_ctx *ctx, qc_factor *F, int32_t k, int32_t l, qc_complex dl, int32_t m,
                          qc_complex dm);
 
@@ -117,25 +122,27 @@ QC_API double qc_factor_logdet(const qc_factor *F);
 /* Smallest and largest pivot: their ratio is a cheap lower bound of the condition number. */
 QC_API void qc_factor_pivots(const qc_factor *F, double *smallest, double *largest);
 
-/* --- closest vector in a lattice (thesis 6.3) --------------------------------------------------- */
+/* --- closest vector in a lattice (thesis 6.3) ------------------------------------------------- */
 
 enum { QC_ROUND_DIRECT = 0, QC_ROUND_GREEDY = 1 };
 
 typedef struct qc_lattice_options {
     uint32_t struct_size;
-    int32_t start;  /* QC_ROUND_DIRECT: nearest integers; QC_ROUND_GREEDY: fix one, re-solve (MIQ)   */
-    int32_t radius; /* 0..3: then change up to this many entries by +-1 while the energy falls       */
+    int32_t start; /* QC_ROUND_DIRECT: nearest integers; QC_ROUND_GREEDY: fix one, re-solve (MIQ) */
+    int32_t radius; /* 0..3: then change up to this many entries by +-1 while the energy falls */
 } qc_lattice_options;
-#define QC_LATTICE_OPTIONS_INIT { sizeof(qc_lattice_options), QC_ROUND_GREEDY, 3 }
+#define QC_LATTICE_OPTIONS_INIT                                                                    \
+    { sizeof(qc_lattice_options), QC_ROUND_GREEDY, 3 }
 
 typedef struct qc_lattice_result {
-    double energy;        /* 1/2 (z - t)^T P (z - t) of the result                                  */
-    double energy_direct; /* the same for nearest-integer rounding                                  */
+    double energy; /* 1/2 (z - t)^T P (z - t) of the result                                  */
+    double energy_direct; /* the same for nearest-integer rounding */
     int64_t moves, evaluations;
 } qc_lattice_result;
 
-/* Finds integers z (as doubles) with small 1/2 (z - t)^T P (z - t); P: n x n, real symmetric positive
- * definite, column-major, full. Deterministic. Errors: NOT_POSDEF, ARGUMENT, NOMEM, CANCELLED. */
+/* Finds integers z (as doubles) with small 1/2 (z - t)^T P (z - t); P: n x n, real symmetric
+ * positive definite, column-major, full. Deterministic. Errors: NOT_POSDEF, ARGUMENT, NOMEM,
+ * CANCELLED. */
 QC_API qc_status qc_lattice_round(qc_ctx *ctx, int32_t n, const double *P, const double *t,
                                   const qc_lattice_options *options, double *z,
                                   qc_lattice_result *result);

@@ -36,15 +36,15 @@ typedef struct qc_param {
     const char *unit, *doc;     /* "deg", "edge" (= mean edge length), "" for pure numbers        */
 } qc_param;
 
-#define QC_PARAM_BOOL(S, field, def, doc) \
+#define QC_PARAM_BOOL(S, field, def, doc)                                                          \
     { #field, QC_BOOL, (uint32_t)offsetof(S, field), (def) ? 1.0 : 0.0, 0, 1, NULL, "", doc }
-#define QC_PARAM_INT(S, field, def, min, max, unit, doc) \
+#define QC_PARAM_INT(S, field, def, min, max, unit, doc)                                           \
     { #field, QC_INT, (uint32_t)offsetof(S, field), def, min, max, NULL, unit, doc }
-#define QC_PARAM_REAL(S, field, def, min, max, unit, doc) \
+#define QC_PARAM_REAL(S, field, def, min, max, unit, doc)                                          \
     { #field, QC_REAL, (uint32_t)offsetof(S, field), def, min, max, NULL, unit, doc }
-#define QC_PARAM_ENUM(S, field, def, choices, doc) \
+#define QC_PARAM_ENUM(S, field, def, choices, doc)                                                 \
     { #field, QC_ENUM, (uint32_t)offsetof(S, field), def, 0, 0, choices, "", doc }
-#define QC_PARAM_TEXT(S, field, doc) \
+#define QC_PARAM_TEXT(S, field, doc)                                                               \
     { #field, QC_TEXT, (uint32_t)offsetof(S, field), 0, 0, 0, NULL, "", doc }
 
 /* A stage's whole view of its host; valid during run() only. Calling thread only. */

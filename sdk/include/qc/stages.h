@@ -1,4 +1,5 @@
-/* qc/stages.h - the built-in stages as tables, for programs that embed one of them without a registry:
+/* qc/stages.h - the built-in stages as tables, for programs that embed one of them without a
+ * registry:
  *
  *     qc_stage_run(ctx, &qc_stage_hodge, NULL, bag);
  *

@@ -1,5 +1,5 @@
-/* Cells of the grid (ROBUST 3): the complete ones are the cycles of four ports around a unit square
- * which the boundary of the surface does not meet. */
+/* Cells of the grid (stages/extract/extract.md): the complete ones are the cycles of four ports
+ * around a unit square which the boundary of the surface does not meet. */
 #include <string.h>
 
 #include "sdk/map/extract/internal.h"

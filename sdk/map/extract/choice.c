@@ -1,6 +1,7 @@
-/* Choice of the open cells: those covered by half or more, or in their centre; where two loops would merge less; cells
- * which hang on one vertex are joined by the better covered of the cells between; a loop which the
- * cells would close gets a cell back. Bounded: every step walks the open cells once. */
+/* Choice of the open cells: those covered by half or more, or in their centre; where two loops
+ * would merge less; cells which hang on one vertex are joined by the better covered of the cells
+ * between; a loop which the cells would close gets a cell back. Bounded: every step walks the open
+ * cells once. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,7 +67,7 @@ static void keep_covered(choice *s) {
     }
 }
 
-/* --- bridges ------------------------------------------------------------------------------------ */
+/* --- bridges ---------------------------------------------------------------------------------- */
 
 typedef struct ranked {
     double area;
@@ -126,7 +127,7 @@ static qc_status keep_bridges(qc_ctx *ctx, choice *s) {
     return QC_OK;
 }
 
-/* --- loops which vanish ------------------------------------------------------------------------- */
+/* --- loops which vanish ----------------------------------------------------------------------- */
 
 /* A side on the boundary of the kept cells, no slit between two sides which would close. */
 static bool is_rim(const qc__cells *c, int32_t a) {

@@ -1,5 +1,5 @@
-/* Quad extraction from an exact integer-grid map (ROBUST 3, after Ebke, Bommes, Campen, Kobbelt,
- * "QEx: robust quad mesh extraction", 2013) with its acceptance test. */
+/* Quad extraction from an exact integer-grid map (stages/extract/extract.md, after Ebke, Bommes,
+ * Campen, Kobbelt, "QEx: robust quad mesh extraction", 2013) with its acceptance test. */
 #include "sdk/map/extract/internal.h"
 
 static qc_status check_map(qc_ctx *ctx, const qc_grid_map *g) {

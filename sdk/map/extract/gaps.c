@@ -55,8 +55,8 @@ qc_status qc__loops_create(qc_ctx *ctx, const qc__cells *cells, qc__loops *out) 
     l.limit = QC__NEW(ctx, double, l.n);
     l.bridge = QC__ZERO(ctx, uint8_t, l.n);
     l.first = QC__NEW(ctx, int32_t, (int64_t)n_open + 1);
-    qc_status status = l.of_edge && l.start && l.limit && l.bridge && l.first ? QC_OK
-                                                                              : QC_ERR_NOMEM;
+    qc_status status =
+        l.of_edge && l.start && l.limit && l.bridge && l.first ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         number_loops(m, l.of_edge, l.start);
         int64_t n = 0;
@@ -100,8 +100,7 @@ static int32_t loop_at(const qc__lattice *l, int32_t id, const int32_t *of_edge)
 static void join(const qc__lattice *lattice, const qc__cells *c, const qc__loops *l, int32_t *set,
                  int32_t *owner) {
     for (int32_t id = 0; id < lattice->n; id++)
-        owner[id] =
-            qc__lattice_on_boundary(lattice, id) ? loop_at(lattice, id, l->of_edge) : -1;
+        owner[id] = qc__lattice_on_boundary(lattice, id) ? loop_at(lattice, id, l->of_edge) : -1;
     for (int32_t i = 0; i < c->n - c->n_complete; i++) {
         const int32_t cell = c->n_complete + i, member = l->n + i;
         if (c->keep[cell]) continue;

@@ -1,11 +1,11 @@
-/* Parts of qc_map_extract (ROBUST 3): lattice vertices, ports, tracing, cells, quads. */
+/* Parts of qc_map_extract (stages/extract/extract.md): lattice vertices, ports, tracing, cells,
+ * quads. */
 #ifndef QC_MAP_EXTRACT_INTERNAL_H
 #define QC_MAP_EXTRACT_INTERNAL_H
 
 #include "sdk/map/grid/internal.h"
 
-/* --- lattice vertices (lattice.c) -------------------------------------------------------
- */
+/* --- lattice vertices (lattice.c) ------------------------------------------------------------- */
 
 /* Integer points of the map, each located once as mesh vertex, edge or face. Numbers: first those
  * at mesh vertices, then those inside edges (from start to end), then those inside faces (row by
@@ -13,9 +13,9 @@
 typedef struct qc__lattice {
     const qc_grid_map *g;
     int32_t n, n_at_vertices, n_on_skeleton; /* skeleton: vertices and edges */
-    int32_t *vertex_id;                      /* n_vertices: number, -1 = no lattice point                      */
-    int32_t *edge_first;                     /* n_edges + 1: numbers of the points inside an edge                     */
-    int32_t *face_first;                     /* n_faces + 1                     */
+    int32_t *vertex_id;  /* n_vertices: number, -1 = no lattice point                      */
+    int32_t *edge_first; /* n_edges + 1: numbers of the points inside an edge                     */
+    int32_t *face_first; /* n_faces + 1                     */
     int32_t *home; /* n: mesh vertex, edge or face                                             */
     int32_t *uv;   /* 2 n: parameters, in the chart of qc__lattice_face                        */
 } qc__lattice;
@@ -32,8 +32,7 @@ qc__place qc__locate(const qc_grid_map *g, int32_t t, qc__point p, int *k);
 /* Number of the lattice vertex at p (grid units, chart of t), -1 = outside or none. */
 int32_t qc__lattice_find(const qc__lattice *lattice, int32_t t, qc__point p);
 
-/* --- ports (ports.c)
- * ---------------------------------------------------------------------- */
+/* --- ports (ports.c) */
 
 /* Directions in which isolines leave the lattice vertices, counter-clockwise at each. */
 typedef struct qc__ports {
@@ -118,13 +117,13 @@ bool qc__triangle_meets_square(const qc__point c[3], qc__point o, int64_t unit);
  * n_complete + i). Side k runs from corner k to corner k + 1; sides have codes 4 cell + k. */
 typedef struct qc__cells {
     int32_t n, n_complete;
-    int32_t *corner; /* 4 n: lattice vertex at the corner, -1 = outside the surface */
-    int32_t *across; /* 4 n: code of the side on the other side of it, -1 = boundary */
-    int32_t *face;   /* n: a face of the cell */
-    int32_t *left;   /* ports->n: side along a port, of a complete cell; -1 = none */
-    uint8_t *keep;   /* n: becomes a quad */
-    int32_t *contact_first;               /* open cells + 1 */
-    int32_t *contact;                     /* 2 each: side of the open cell, side of the other cell   */
+    int32_t *corner;        /* 4 n: lattice vertex at the corner, -1 = outside the surface */
+    int32_t *across;        /* 4 n: code of the side on the other side of it, -1 = boundary */
+    int32_t *face;          /* n: a face of the cell */
+    int32_t *left;          /* ports->n: side along a port, of a complete cell; -1 = none */
+    uint8_t *keep;          /* n: becomes a quad */
+    int32_t *contact_first; /* open cells + 1 */
+    int32_t *contact;       /* 2 each: side of the open cell, side of the other cell   */
     int64_t n_contacts, contact_capacity; /* pairs */
     qc__pieces pieces;
 } qc__cells;
@@ -170,7 +169,8 @@ qc_status qc__choose(qc_ctx *ctx, qc__cells *cells, const qc__loops *loops, int3
 /* --- result (vertices.c, place.c, quads.c) ------------------------------- */
 
 /* Output vertex of each corner of the kept cells: corners which cells share across their sides.
- * vertex: 4 n, -1 = not kept. *n_lattice of the *n_vertices, the first ones, are lattice vertices. */
+ * vertex: 4 n, -1 = not kept. *n_lattice of the *n_vertices, the first ones, are lattice vertices.
+ */
 qc_status qc__quad_vertices(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
                             int32_t *vertex, int32_t *n_lattice, int32_t *n_vertices);
 /* Puts the vertices outside the surface on its boundary and moves those next to it. */

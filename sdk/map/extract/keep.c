@@ -52,7 +52,7 @@ static void keep_largest(keeper *k) {
     }
 }
 
-/* --- topology ----------------------------------------------------------------------------------- */
+/* --- topology --------------------------------------------------------------------------------- */
 
 /* V - E + F, twice; a side is half an edge, or a whole one on the boundary. */
 static void count_cells(keeper *k) {
@@ -95,7 +95,7 @@ static bool differs(const component *c) {
     return c->best < 0 || c->dropped > c->size / 9 || c->euler != 0 || c->loops != 0;
 }
 
-/* --- repair ------------------------------------------------------------------------------------- */
+/* --- repair ----------------------------------------------------------------------------------- */
 
 static int32_t loop_component(const keeper *k, int32_t loop) {
     return k->mesh->face_component[k->mesh->vertex_corner[k->loops.start[loop]] / 3];
@@ -103,8 +103,7 @@ static int32_t loop_component(const keeper *k, int32_t loop) {
 
 /* Loops of a component which share a gap (or all of them when none do) ask for more cells. */
 static qc_status relax(keeper *k, int32_t attempt) {
-    const qc_status status =
-        qc__loops_gaps(k->ctx, k->ports, k->cells, &k->loops, k->gap);
+    const qc_status status = qc__loops_gaps(k->ctx, k->ports, k->cells, &k->loops, k->gap);
     if (status != QC_OK) return status;
     for (int32_t i = 0; i < k->mesh->n_components; i++) k->size[i] = 0;
     for (int32_t i = 0; i < k->loops.n; i++) /* loops which share a gap */
@@ -122,7 +121,7 @@ static qc_status relax(keeper *k, int32_t attempt) {
     return QC_OK;
 }
 
-/* --- errors ------------------------------------------------------------------------------------- */
+/* --- errors ----------------------------------------------------------------------------------- */
 
 static int32_t first_face(const qc_mesh *m, int32_t i) {
     int32_t t = 0;

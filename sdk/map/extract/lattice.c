@@ -1,5 +1,5 @@
-/* Lattice vertices of a grid map (ROBUST 3): every integer point is found once, as mesh vertex, on
- * an edge or in a face, by exact tests only. */
+/* Lattice vertices of a grid map (stages/extract/extract.md): every integer point is found once, as
+ * mesh vertex, on an edge or in a face, by exact tests only. */
 #include <stdlib.h>
 
 #include "sdk/map/extract/internal.h"

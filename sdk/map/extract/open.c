@@ -4,7 +4,7 @@
 
 #include "sdk/map/extract/internal.h"
 
-/* --- pieces along the boundary ------------------------------------------------------------------ */
+/* --- pieces along the boundary ---------------------------------------------------------------- */
 
 static qc_status flood_at(qc_ctx *ctx, qc__pieces *p, int32_t face, int64_t u, int64_t v) {
     const int64_t unit = (int64_t)1 << p->ports->lattice->g->bits;
@@ -58,7 +58,7 @@ qc_status qc__open_pieces(qc_ctx *ctx, const qc__ports *ports, qc__pieces *p) {
     return QC_OK;
 }
 
-/* --- contacts ----------------------------------------------------------------------------------- */
+/* --- contacts --------------------------------------------------------------------------------- */
 
 /* 4 cell + side of the complete cell whose first side is that of the square of v. */
 static int32_t complete_side(const qc__cells *c, const qc__ports *ports, const qc__visit *v) {
@@ -101,9 +101,8 @@ static bool add_contact(qc_ctx *ctx, qc__cells *c, int64_t first, int32_t side, 
  * across the halfedge which runs along the side. false = the face does not reach it. */
 static bool neighbour(const qc_grid_map *g, const qc__visit *v, int k, qc__visit *w) {
     const int64_t unit = (int64_t)1 << g->bits;
-    *w = (qc__visit){.face = v->face,
-                     .at = qc__square_corner(v, (k + 1) & 3, unit),
-                     .d = (v->d + k + 2) & 3};
+    *w = (qc__visit){
+        .face = v->face, .at = qc__square_corner(v, (k + 1) & 3, unit), .d = (v->d + k + 2) & 3};
     qc__point c[3];
     for (int i = 0; i < 3; i++) c[i] = qc__in_square(w, qc__grid_corner(g, 3 * v->face + i));
     if (qc__triangle_meets_square(c, (qc__point){0, 0}, unit)) return true;

@@ -1,8 +1,9 @@
 /* Pieces of grid cells on surfaces with boundary: the faces which meet an open unit square, reached
- * from one of them, found by exact tests; a hash table tells which piece holds a face and square. */
+ * from one of them, found by exact tests; a hash table tells which piece holds a face and square.
+ */
 #include "sdk/map/extract/internal.h"
 
-/* --- tests in the frame of a square ------------------------------------------------------------- */
+/* --- tests in the frame of a square ----------------------------------------------------------- */
 
 /* Separating axes u, v and the segment's normal. */
 bool qc__meets_square(qc__point a, qc__point b, qc__point o, int64_t unit) {
@@ -74,7 +75,7 @@ static double covered(const qc__point c[3], int64_t unit) {
     return 0.5 * twice;
 }
 
-/* --- hash table --------------------------------------------------------------------------------- */
+/* --- hash table ------------------------------------------------------------------------------- */
 
 /* Lower left corner of the square in the chart. */
 static qc__point lower_left(const qc__visit *v, int64_t unit) {
@@ -139,7 +140,7 @@ void qc__pieces_free(qc__pieces *p) {
     *p = (qc__pieces){0};
 }
 
-/* --- flood -------------------------------------------------------------------------------------- */
+/* --- flood ------------------------------------------------------------------------------------ */
 
 static bool holds_centre(const qc__point c[3], int64_t unit) {
     const qc__point centre = {unit / 2, unit / 2};

@@ -8,7 +8,7 @@
 
 /* A point of a boundary halfedge, s from its start to its end. */
 typedef struct candidate {
-    int32_t halfedge, corner; /* the cell corner from whose square it was seen */
+    int32_t halfedge, corner;  /* the cell corner from whose square it was seen */
     double s, distance, apart; /* from the lattice point; from other vertices, in edge lengths */
     double offset[2];          /* from the lattice point, in the frame of the square */
 } candidate;
@@ -123,10 +123,9 @@ static void try_halfedge(const qc__rim *p, int32_t v, const qc__visit *visit, in
     double range[2];
     if (length == 0 || !clip(a, b, range)) return;
     const double nearest = ((at[0] - a[0]) * d[0] + (at[1] - a[1]) * d[1]) / (length * length);
-    const double unit_length =
-        distance(m->position + 3 * (int64_t)qc_halfedge_start(m, h),
-                 m->position + 3 * (int64_t)qc_halfedge_end(m, h)) /
-        length;
+    const double unit_length = distance(m->position + 3 * (int64_t)qc_halfedge_start(m, h),
+                                        m->position + 3 * (int64_t)qc_halfedge_end(m, h)) /
+                               length;
     for (int i = 0; i < 4; i++) {
         candidate c = {.halfedge = h, .corner = corner};
         c.s = i == 0 ? fmin(fmax(nearest, range[0]), range[1])

@@ -1,5 +1,5 @@
-/* Ports of lattice vertices (ROBUST 3): one for each axis direction in the half-open sectors around
- * a point, so that every direction appears exactly once. */
+/* Ports of lattice vertices (stages/extract/extract.md): one for each axis direction in the
+ * half-open sectors around a point, so that every direction appears exactly once. */
 #include "sdk/map/extract/internal.h"
 
 /* Appends the directions of [a, b) (closed: [a, b]) counter-clockwise. Arrays NULL = count only. */

@@ -1,5 +1,5 @@
-/* Tracing of isolines from port to port (ROBUST 3). The line is u or v = const, so the side of a
- * corner is the sign of a difference; only the stop test needs products. */
+/* Tracing of isolines from port to port (stages/extract/extract.md). The line is u or v = const, so
+ * the side of a corner is the sign of a difference; only the stop test needs products. */
 #include "sdk/map/extract/internal.h"
 
 /* A unit step on its way: its ends in the chart of `face`, direction d from `from` to `to`. */

@@ -1,4 +1,4 @@
-/* Exact integer-grid maps on a fixed-point grid (ROBUST 2). */
+/* Exact integer-grid maps on a fixed-point grid (docs/theory/exact-grid.md). */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* Exact arithmetic on grid maps (ROBUST 2): points in grid units and the transitions between
- * charts. */
+/* Exact arithmetic on grid maps (docs/theory/exact-grid.md): points in grid units and the
+ * transitions between charts. */
 #ifndef QC_MAP_GRID_INTERNAL_H
 #define QC_MAP_GRID_INTERNAL_H
 

@@ -1,5 +1,6 @@
-/* Slivers flipped or flattened by rounding (ROBUST 2, step 4): a vertex moves by a few grid units
- * inside its star. Regular interior vertices only; coordinates on isolines stay there. */
+/* Slivers flipped or flattened by rounding (docs/theory/exact-grid.md): a vertex moves by a few
+ * grid units inside its star. Regular interior vertices only; coordinates on isolines stay there.
+ */
 #include <stdlib.h>
 
 #include "sdk/map/grid/internal.h"

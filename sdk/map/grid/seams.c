@@ -1,5 +1,5 @@
-/* Transitions of an integer-seamless map (ROBUST 1): across an edge from the lower face s to t,
- * f_t = i^r f_s + tau with r in 0..3 and integer tau. */
+/* Transitions of an integer-seamless map (docs/theory/exact-grid.md): across an edge from the lower
+ * face s to t, f_t = i^r f_s + tau with r in 0..3 and integer tau. */
 #include <complex.h>
 #include <math.h>
 

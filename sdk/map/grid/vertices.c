@@ -1,6 +1,6 @@
-/* Rounding of an integer-seamless map to the grid (ROBUST 1 and 2): one representative a vertex is
- * rounded, or set to the fixed point of the transitions around it; the other corners follow
- * exactly. */
+/* Rounding of an integer-seamless map to the grid (docs/theory/exact-grid.md): one representative a
+ * vertex is rounded, or set to the fixed point of the transitions around it; the other corners
+ * follow exactly. */
 #include <math.h>
 
 #include "sdk/map/grid/internal.h"
@@ -112,8 +112,8 @@ static int count_directions(const qc_grid_map *g, int32_t v) {
     return n;
 }
 
-/* A cone whose angle is 4 pi, 6 pi, ... has no holonomy, so nothing pinned it (ROBUST 1): put it on
- * its lattice point. */
+/* A cone whose angle is 4 pi, 6 pi, ... has no holonomy, so nothing pinned it
+ * (docs/theory/exact-grid.md): put it on its lattice point. */
 static qc_status pin_full_turns(qc__grid_build *b) {
     const qc_mesh *m = b->mesh;
     const qc_grid_map view = {.mesh = m,

@@ -18,7 +18,8 @@ void qc__periods_free(qc__periods *p) {
 }
 
 /* F here lives in the combed gauge of the first wedge, that of qc_stiffness_vertices in the face of
- * vertex_corner: f'_c = i^{face_turn} f_c = i^{face_turn + corner_turn} F~ at a corner c of that wedge. */
+ * vertex_corner: f'_c = i^{face_turn} f_c = i^{face_turn + corner_turn} F~ at a corner c of that
+ * wedge. */
 static qc_status find_gauge(qc_ctx *ctx, const qc_cover *cover, const int8_t *face_turn,
                             const qc__seams *seams, int8_t *gauge) {
     const qc_mesh *mesh = cover->mesh;
@@ -112,8 +113,8 @@ qc_status qc__periods_create(qc_ctx *ctx, const qc_cover *cover, const qc__seams
 
 /* Scratch of one column of the period matrix. */
 typedef struct column {
-    double _Complex *symbol; /* n_symbols: values of the symbols, later their duals                  */
-    double _Complex *wedge;  /* n_wedges: o_w, later the residual summed over the wedge                */
+    double _Complex *symbol; /* n_symbols: values of the symbols, later their duals */
+    double _Complex *wedge;  /* n_wedges: o_w, later the residual summed over the wedge  */
 } column;
 
 /* o_w from the values of the symbols. */
@@ -177,7 +178,8 @@ static void project(const qc__periods *p, const qc_complex *F, column *scratch,
     for (int32_t i = 0; i < p->n_seam_faces; i++) {
         const int32_t t = p->seam_face[i];
         double _Complex y[3], g[3];
-        for (int32_t k = 0; k < 3; k++) y[k] = corner_value(p, F, scratch->wedge, 3 * (int64_t)t + k);
+        for (int32_t k = 0; k < 3; k++)
+            y[k] = corner_value(p, F, scratch->wedge, 3 * (int64_t)t + k);
         face_residual(p->cotangent + 3 * (int64_t)t, y, g);
         for (int32_t k = 0; k < 3; k++) residual[s->corner_wedge[3 * t + k]] += g[k];
     }

@@ -1,43 +1,44 @@
-/* Global continuity: rounds the periods of a seamless map and adds the harmonic map which closes the gap
- * (thesis 4.2.1, 4.2.2, 6.3). When a number of quads is asked for, the map is rescaled and rounded
- * again until its area meets it: periods scale with the map, the period matrix does not change. */
+/* Global continuity: rounds the periods of a seamless map and adds the harmonic map which closes
+ * the gap (thesis 4.2.1, 4.2.2, 6.3). When a number of quads is asked for, the map is rescaled and
+ * rounded again until its area meets it: periods scale with the map, the period matrix does not
+ * change. */
 #include "sdk/map/periods/period_matrix.h"
 #include "sdk/map/periods/separation.h"
 #include <math.h>
 #include <string.h>
 
 enum {
-    LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly        */
+    LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly */
     DENSITY_ROUNDS = 24,
-    NEWTON_ROUNDS = 5, /* of these; then scales about the best are scanned                         */
+    NEWTON_ROUNDS = 5, /* of these; then scales about the best are scanned */
     REACH = 3 /* target edge lengths within which cones are kept apart                            */
 };
 
-static const double slack = 1e-9;    /* deviations nearer than that are equal                          */
-static const double promised = 0.05; /* deviation of the number of quads which is good enough           */
+static const double slack = 1e-9;    /* deviations nearer than that are equal    */
+static const double promised = 0.05; /* deviation of the number of quads which is good enough */
 
 typedef struct rounding {
     qc_ctx *ctx;
     const qc_seamless_map *seamless;
     const qc_mesh *mesh;
     qc_round_options options;
-    double *cotangent; /* times the weights of the faces                                             */
+    double *cotangent; /* times the weights of the faces */
     qc__seams *seams;
     qc__periods *periods;
     qc__separation *separation;
-    double *P;                /* (2 n)^2, NULL = direct rounding only                               */
-    double _Complex *period;  /* n: real-valued periods in lattice units                            */
-    double _Complex *gap;     /* n: rounded minus scaled periods                                    */
-    double *target, *rounded; /* 2 n                                                                */
-    qc_complex *f;            /* 3 n_faces: the shifted seamless map                                */
-    qc_complex *trial, *best; /* 3 n_faces                                                          */
+    double *P; /* (2 n)^2, NULL = direct rounding only                               */
+    double _Complex *period; /* n: real-valued periods in lattice units */
+    double _Complex *gap; /* n: rounded minus scaled periods                                    */
+    double *target, *rounded; /* 2 n */
+    qc_complex *f; /* 3 n_faces: the shifted seamless map                                */
+    qc_complex *trial, *best; /* 3 n_faces */
     double best_scale, best_miss, harmonic, harmonic_direct;
     int64_t moves, evaluations;
-    int32_t collisions; /* pairs of cones which could not be kept apart in the last trial ...      */
+    int32_t collisions; /* pairs of cones which could not be kept apart in the last trial ... */
     int32_t best_collisions; /* ... and in the best map                                           */
 } rounding;
 
-/* --- periods of the seamless map ---------------------------------------------------------------- */
+/* --- periods of the seamless map -------------------------------------------------------------- */
 
 /* Value of a symbol in the map: the position of a cone, or the translation across a segment. */
 static double _Complex measure_symbol(const rounding *r, int32_t symbol, const int32_t *some_edge) {
@@ -84,7 +85,7 @@ static qc_status read_periods(rounding *r) {
     return status;
 }
 
-/* --- one trial ---------------------------------------------------------------------------------- */
+/* --- one trial -------------------------------------------------------------------------------- */
 
 static double signed_area(const qc_complex *f, int32_t n_faces) {
     double area = 0;
@@ -148,8 +149,8 @@ static qc_status energy_of_direct_rounding(rounding *r, double *energy) {
     return status;
 }
 
-/* Whether the trial beats the best map so far: a number of quads which is good enough, then cones kept apart, then the
- * number of quads. */
+/* Whether the trial beats the best map so far: a number of quads which is good enough, then cones
+ * kept apart, then the number of quads. */
 static bool is_better(const rounding *r, double miss) {
     const bool good = miss <= promised + slack, best_good = r->best_miss <= promised + slack;
     if (good != best_good) return good;
@@ -161,7 +162,7 @@ static bool is_better(const rounding *r, double miss) {
 static qc_status try_scale(rounding *r, double scale, double wanted, double *quads) {
     const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
     qc_lattice_result result = {0};
-    const bool weighted = r->P && r->seamless->weight; /* then P measures in another norm           */
+    const bool weighted = r->P && r->seamless->weight; /* then P measures in another norm */
     qc_status status = QC_OK;
     memset(r->trial, 0, sizeof *r->trial * (size_t)n_corners);
     if (r->seams->n_free > 0) {
@@ -209,7 +210,7 @@ static qc_status meet_density(rounding *r) {
         if (i < NEWTON_ROUNDS - 1) {
             const double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
             scale *= factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
-        } else { /* a map with few periods jumps: 1, -1, 2, -2, ... percent about the middle          */
+        } else { /* a map with few periods jumps: 1, -1, 2, -2, ... percent about the middle */
             if (i == NEWTON_ROUNDS - 1) middle = r->best_scale;
             const int32_t k = i - NEWTON_ROUNDS + 1;
             scale = middle * (1.0 + 0.01 * (k / 2 + 1) * (k % 2 ? -1 : 1));
@@ -219,7 +220,7 @@ static qc_status meet_density(rounding *r) {
     return QC_OK;
 }
 
-/* --- the whole ---------------------------------------------------------------------------------- */
+/* --- the whole -------------------------------------------------------------------------------- */
 
 static qc_status prepare(rounding *r) {
     const qc_seamless_map *seamless = r->seamless;
@@ -287,7 +288,8 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
         const int32_t h = r->mesh->edge_halfedge[2 * (int64_t)e], g = r->mesh->twin[h];
         if (g >= 0) /* f'_t = i^{c_t - m - c_s} f'_s + tau */
             rotation[e] = (int8_t)((seamless->face_turn[g / 3] - qc_cover_turn(&cover, h) -
-                                    seamless->face_turn[h / 3]) & 3);
+                                    seamless->face_turn[h / 3]) &
+                                   3);
     }
     if (status == QC_OK)
         status = qc_corner_map_create(r->ctx, r->mesh, &r->best[0].re,
@@ -317,8 +319,9 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
     return QC_OK;
 }
 
-/* No quadrangulation of the torus has exactly two irregular vertices of valence 3 and 5: the holonomy of such a flat
- * metric would be trivial (Izmestiev, Kusner, Rote, Springborn, Sullivan 2013). */
+/* No quadrangulation of the torus has exactly two irregular vertices of valence 3 and 5: the
+ * holonomy of such a flat metric would be trivial (Izmestiev, Kusner, Rote, Springborn, Sullivan
+ * 2013). */
 static qc_status refuse_impossible(const rounding *r) {
     const qc_mesh *mesh = r->mesh;
     const qc_matching *matching = r->seamless->matching;
@@ -330,14 +333,15 @@ static qc_status refuse_impossible(const rounding *r) {
         if (matching->index4[v] == 1 || matching->index4[v] == -1)
             cone[matching->index4[v] < 0] = v;
     if (cone[0] < 0 || cone[1] < 0) return QC_OK;
-    return qc__fail(r->ctx, QC_ERR_FAILED, cone[0],
-                    "no quad mesh of a torus has exactly one vertex of valence 3 (here %d) and one of "
-                    "valence 5 (here %d); smooth the field or give it more singularities",
-                    (int)cone[0], (int)cone[1]);
+    return qc__fail(
+        r->ctx, QC_ERR_FAILED, cone[0],
+        "no quad mesh of a torus has exactly one vertex of valence 3 (here %d) and one of "
+        "valence 5 (here %d); smooth the field or give it more singularities",
+        (int)cone[0], (int)cone[1]);
 }
 
-qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless, const qc_round_options *options,
-                       qc_corner_map **out) {
+qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
+                       const qc_round_options *options, qc_corner_map **out) {
     rounding r = {.ctx = ctx, .seamless = seamless, .mesh = seamless->matching->field->mesh};
     r.options = (qc_round_options)QC_ROUND_OPTIONS_INIT;
     if (options)
@@ -355,8 +359,8 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless, const qc_ro
     qc__separation_free(r.separation);
     qc__periods_free(r.periods);
     qc__seams_free(r.seams);
-    void *const blocks[] = {r.cotangent, r.f,      r.trial,  r.best,  r.P,
-                            r.period,    r.gap,    r.target, r.rounded};
+    void *const blocks[] = {r.cotangent, r.f,   r.trial,  r.best,   r.P,
+                            r.period,    r.gap, r.target, r.rounded};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

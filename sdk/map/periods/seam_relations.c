@@ -1,12 +1,13 @@
 /* Free variables of a map with seams: integer elimination of the node relations (see seams.h).
  *
  * Relation at interior node n with turning R_n: sum_j i^{b_j} tau_j = (1 - i^{R_n}) p_n, every
- * translation with a unit coefficient. A spanning forest of the graph of nodes and segments, rooted at
- * the boundary where there is one, solves all relations but one a closed component: the translation of
- * the edge to the parent follows from those of the children, the other segments and p_n without
- * division. In the root's relation all coefficients are units times powers of (1 + i), so the variable
- * with the smallest power is an integer combination of the others. Last, a global shift sets one variable
- * to zero. What remains are 2g + b - 2 complex variables on a closed surface with b cones, (4.1). */
+ * translation with a unit coefficient. A spanning forest of the graph of nodes and segments, rooted
+ * at the boundary where there is one, solves all relations but one a closed component: the
+ * translation of the edge to the parent follows from those of the children, the other segments and
+ * p_n without division. In the root's relation all coefficients are units times powers of (1 + i),
+ * so the variable with the smallest power is an integer combination of the others. Last, a global
+ * shift sets one variable to zero. What remains are 2g + b - 2 complex variables on a closed
+ * surface with b cones, (4.1). */
 #include "sdk/map/periods/seams.h"
 #include <math.h>
 #include <string.h>
@@ -28,10 +29,10 @@ typedef struct solver {
     int32_t *vertex_node;    /* node of an interior node vertex, -1 */
     int64_t *incident_start; /* segments at each vertex that ends one */
     int32_t *incident;
-    int32_t *order, n_order;  /* vertices of the forest, roots first */
-    int32_t *parent_segment;  /* n_vertices, -1 = root or unvisited */
+    int32_t *order, n_order; /* vertices of the forest, roots first */
+    int32_t *parent_segment; /* n_vertices, -1 = root or unvisited */
     uint8_t *visited;
-    row *rows;                /* of dependent translations; n = -1: independent */
+    row *rows; /* of dependent translations; n = -1: independent */
     term *terms;
     int64_t n_terms, capacity;
     double _Complex *sum; /* dense accumulator over the symbols ... */
@@ -72,8 +73,8 @@ static void sum_clear(solver *q) {
     q->n_touched = 0;
 }
 
-/* Stores factor * sum, without `skip`, as the row of `symbol`. Coefficients are Gaussian (half-)integers of
- * small size, so sums which vanish do so exactly. */
+/* Stores factor * sum, without `skip`, as the row of `symbol`. Coefficients are Gaussian
+ * (half-)integers of small size, so sums which vanish do so exactly. */
 static bool sum_store(solver *q, int32_t symbol, double _Complex factor, int32_t skip) {
     if (!qc__reserve(q->ctx, (void **)&q->terms, &q->capacity, q->n_terms + q->n_touched,
                      sizeof(term)))
@@ -157,8 +158,8 @@ static void grow_forest(solver *q) {
 
 /* --- elimination ------------------------------------------------------------------------------ */
 
-/* sum := relation of node n (translations minus (1 - i^R) p), all but the given segment. Returns the
- * coefficient of that segment. */
+/* sum := relation of node n (translations minus (1 - i^R) p), all but the given segment. Returns
+ * the coefficient of that segment. */
 static double _Complex sum_relation(solver *q, int32_t n, int32_t without) {
     const qc__seams *s = q->s;
     double _Complex left_out = 0;
@@ -184,10 +185,13 @@ static qc_status eliminate_forest(solver *q) {
     return QC_OK;
 }
 
-static double norm2(double _Complex z) { return creal(z) * creal(z) + cimag(z) * cimag(z); }
+static double norm2(double _Complex z) {
+    return creal(z) * creal(z) + cimag(z) * cimag(z);
+}
 
-/* The relation left over at the root of a closed component gives one variable by the others: the one whose
- * coefficient, on the lattice, has the smallest power of 1 + i, i.e. the smallest norm. */
+/* The relation left over at the root of a closed component gives one variable by the others: the
+ * one whose coefficient, on the lattice, has the smallest power of 1 + i, i.e. the smallest norm.
+ */
 static qc_status eliminate_roots(solver *q) {
     const qc__seams *s = q->s;
     for (int32_t at = 0; at < q->n_order; at++) {
@@ -227,8 +231,8 @@ static void choose_scales(qc__seams *s, int32_t lattice) {
     }
 }
 
-/* One variable a component which a global shift can set to zero: the one whose lattice is coarsest in units
- * of its response to the shift. */
+/* One variable a component which a global shift can set to zero: the one whose lattice is coarsest
+ * in units of its response to the shift. */
 static void choose_fixed(solver *q) {
     qc__seams *s = q->s;
     for (int32_t c = 0; c < s->mesh->n_components; c++) s->fixed_symbol[c] = -1;
@@ -236,8 +240,8 @@ static void choose_fixed(solver *q) {
         const double response = norm2(qc__seams_shift(s, j) / s->scale[j]);
         if (q->rows[j].n >= 0 || response == 0) continue;
         int32_t *fixed = &s->fixed_symbol[qc__seams_component(s, j)];
-        const double best = *fixed < 0 ? INFINITY
-                                       : norm2(qc__seams_shift(s, *fixed) / s->scale[*fixed]);
+        const double best =
+            *fixed < 0 ? INFINITY : norm2(qc__seams_shift(s, *fixed) / s->scale[*fixed]);
         if (response < best) *fixed = j;
     }
 }
@@ -292,9 +296,9 @@ static qc_status write_rows(solver *q) {
 }
 
 static void solver_free(solver *q) {
-    void *const blocks[] = {q->vertex_node, q->incident_start, q->incident, q->order,
-                            q->parent_segment, q->visited,     q->rows,     q->terms,
-                            q->sum,            q->in_sum,      q->touched,  q->dependent};
+    void *const blocks[] = {
+        q->vertex_node, q->incident_start, q->incident, q->order,  q->parent_segment, q->visited,
+        q->rows,        q->terms,          q->sum,      q->in_sum, q->touched,        q->dependent};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
 }
 

@@ -1,5 +1,5 @@
-/* The Hodge step: from a matched cross field to a locally integrable field and its integral on the cut
- * surface (thesis 4.1; 2007 paper, section 4, eq. (9)). */
+/* The Hodge step: from a matched cross field to a locally integrable field and its integral on the
+ * cut surface (thesis 4.1; 2007 paper, section 4, eq. (9)). */
 #include "sdk/base/internal.h"
 #include <math.h>
 #include <qc/map.h>
@@ -43,7 +43,8 @@ static qc_status cut_at_cones(qc_ctx *ctx, const qc_matching *matching, const qc
     qc_status status = base && shift ? qc_cover_shifts(ctx, cover, shift) : QC_ERR_NOMEM;
     if (status == QC_OK) {
         for (int32_t v = 0; v < mesh->n_vertices; v++)
-            base[v] = !qc_vertex_on_boundary(mesh, v) && (shift[v] != 0 || matching->index4[v] != 0);
+            base[v] =
+                !qc_vertex_on_boundary(mesh, v) && (shift[v] != 0 || matching->index4[v] != 0);
         status = qc_mesh_cut_graph(ctx, mesh, NULL, base, cut);
     }
     qc__free(base);
@@ -57,22 +58,22 @@ typedef struct hodge {
     const qc_mesh *mesh;
     const int32_t *index4; /* n_vertices */
     qc_cover cover;
-    double *cotangent;   /* 3 n_faces */
-    double *compliance;  /* 3 n_faces: cotangents over the weights                                   */
-    double *weight;      /* n_faces */
-    qc_complex *frame;   /* 3 n_faces: the given field                                               */
-    qc_complex *z, *f;   /* 3 n_faces */
-    uint8_t *cut;        /* n_edges */
-    int8_t *face_turn;   /* n_faces */
+    double *cotangent;  /* 3 n_faces */
+    double *compliance; /* 3 n_faces: cotangents over the weights */
+    double *weight;     /* n_faces */
+    qc_complex *frame;  /* 3 n_faces: the given field  */
+    qc_complex *z, *f;  /* 3 n_faces */
+    uint8_t *cut;       /* n_edges */
+    int8_t *face_turn;  /* n_faces */
 } hodge;
 
-/* The closest integrable field in the weighted norm sum w |Z^ - Z|^2: the multiplier of curl* = 0 solves L* with
- * cotangents over w. */
+/* The closest integrable field in the weighted norm sum w |Z^ - Z|^2: the multiplier of curl* = 0
+ * solves L* with cotangents over w. */
 static qc_status project(hodge *q) {
     const int64_t n_corners = 3 * (int64_t)q->mesh->n_faces;
     for (int64_t c = 0; c < n_corners; c++) q->compliance[c] = q->cotangent[c] / q->weight[c / 3];
-    qc_status status = qc_hodge_remove_curl(q->ctx, &q->cover, q->compliance, q->frame, q->z, NULL,
-                                            NULL);
+    qc_status status =
+        qc_hodge_remove_curl(q->ctx, &q->cover, q->compliance, q->frame, q->z, NULL, NULL);
     double residual = 0;
     if (status == QC_OK)
         status = qc_form_integrate(q->ctx, &q->cover, q->cut, q->face_turn, q->z, q->f, &residual);
@@ -84,7 +85,8 @@ static qc_status project(hodge *q) {
     return status;
 }
 
-/* Cones whose image angle is not 4 - index4 quarter turns: fold-overs which untangling cannot undo. */
+/* Cones whose image angle is not 4 - index4 quarter turns: fold-overs which untangling cannot undo.
+ */
 static int32_t count_wrong_cones(const hodge *q) {
     const qc_mesh *mesh = q->mesh;
     const double quarter = 1.57079632679489661923;
@@ -105,13 +107,13 @@ static int32_t count_wrong_cones(const hodge *q) {
     return wrong;
 }
 
-/* Raises the weight of folded faces, and of those around them half as much (stiffening as in mixed-integer
- * quadrangulation, Bommes, Zimmer, Kobbelt 2009, 5.4). */
+/* Raises the weight of folded faces, and of those around them half as much (stiffening as in
+ * mixed-integer quadrangulation, Bommes, Zimmer, Kobbelt 2009, 5.4). */
 static void stiffen(hodge *q) {
     for (int32_t t = 0; t < q->mesh->n_faces; t++) {
         const qc_complex *p = q->f + 3 * (int64_t)t;
-        const double det = (p[1].re - p[0].re) * (p[2].im - p[0].im) -
-                           (p[2].re - p[0].re) * (p[1].im - p[0].im);
+        const double det =
+            (p[1].re - p[0].re) * (p[2].im - p[0].im) - (p[2].re - p[0].re) * (p[1].im - p[0].im);
         if (det <= 0) q->weight[t] *= 4;
     }
     for (int32_t h = 0; h < 3 * q->mesh->n_faces; h++) {

@@ -4,12 +4,12 @@
 
 void qc__seams_free(qc__seams *s) {
     if (!s) return;
-    void *const blocks[] = {s->edge_segment, s->edge_left,   s->segment_turn,    s->segment_node,
-                            s->cone_vertex,  s->vertex_cone, s->cone_turn,       s->vertex_wedge,
-                            s->corner_wedge, s->wedge_turn,  s->wedge_start,     s->term_symbol,
-                            s->term_turn,    s->node_vertex, s->relation_start,  s->relation_symbol,
+    void *const blocks[] = {s->edge_segment,  s->edge_left,   s->segment_turn,   s->segment_node,
+                            s->cone_vertex,   s->vertex_cone, s->cone_turn,      s->vertex_wedge,
+                            s->corner_wedge,  s->wedge_turn,  s->wedge_start,    s->term_symbol,
+                            s->term_turn,     s->node_vertex, s->relation_start, s->relation_symbol,
                             s->relation_turn, s->free_symbol, s->scale,          s->row_start,
-                            s->row_free,     s->row_value, s->fixed_symbol};
+                            s->row_free,      s->row_value,   s->fixed_symbol};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     qc__free(s);
 }
@@ -166,8 +166,8 @@ bool qc__walk_cross(qc_ctx *ctx, const qc__seams *s, qc__walk *w, int32_t h) {
     return true;
 }
 
-static bool append_terms(qc_ctx *ctx, const qc__walk *w, int32_t **symbol, int8_t **turn, int64_t *n,
-                         int64_t *capacity) {
+static bool append_terms(qc_ctx *ctx, const qc__walk *w, int32_t **symbol, int8_t **turn,
+                         int64_t *n, int64_t *capacity) {
     if (*n + w->n > *capacity) {
         int64_t symbols = *capacity, turns = *capacity;
         if (!qc__reserve(ctx, (void **)symbol, &symbols, *n + w->n, sizeof **symbol)) return false;

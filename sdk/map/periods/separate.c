@@ -1,4 +1,5 @@
-/* Local search which moves rounded periods until no two neighbouring cones collide (see separation.h). */
+/* Local search which moves rounded periods until no two neighbouring cones collide (see
+ * separation.h). */
 #include "sdk/map/periods/separation.h"
 #include <math.h>
 #include <string.h>
@@ -11,26 +12,33 @@ typedef struct search {
     const qc__separation *s;
     int32_t n; /* complex variables */
     const double *P;
-    double *z, *slope;            /* slope = P (z - t), 2 n */
+    double *z, *slope;             /* slope = P (z - t), 2 n */
     double _Complex *now, *wanted; /* forms of the pairs for z and for t */
-    int64_t *pair_start;          /* pairs and coefficients by variable */
+    int64_t *pair_start;           /* pairs and coefficients by variable */
     int32_t *pair;
     double _Complex *coefficient;
     double energy;
-    int32_t coincidence; /* weight of two cones on one lattice point: 1, then 2                      */
+    int32_t coincidence; /* weight of two cones on one lattice point: 1, then 2 */
 } search;
 
-static double _Complex unit_of(int32_t k) { return qc__turn(1.0, k); }
+static double _Complex unit_of(int32_t k) {
+    return qc__turn(1.0, k);
+}
 
-/* Positive: on one lattice point (1, or 2 when that counts more), or past each other (1); 0: apart. */
+/* Positive: on one lattice point (1, or 2 when that counts more), or past each other (1); 0: apart.
+ */
 static int32_t collides(const search *q, int32_t pair, double _Complex now) {
     const double _Complex w = q->wanted[pair];
     if (creal(now) * creal(now) + cimag(now) * cimag(now) < 0.25) return q->coincidence;
     return creal(now) * creal(w) + cimag(now) * cimag(w) < 0;
 }
 
-static int32_t index_of(step a) { return 2 * a.variable + (a.unit & 1); }
-static double sign_of(step a) { return a.unit & 2 ? -1.0 : 1.0; }
+static int32_t index_of(step a) {
+    return 2 * a.variable + (a.unit & 1);
+}
+static double sign_of(step a) {
+    return a.unit & 2 ? -1.0 : 1.0;
+}
 
 static double energy_change(const search *q, step a) {
     const int64_t i = index_of(a);
@@ -57,7 +65,9 @@ static void apply(search *q, step a) {
         q->now[q->pair[k]] += q->coefficient[k] * unit_of(a.unit);
 }
 
-static step opposite(step a) { return (step){a.variable, (a.unit + 2) & 3}; }
+static step opposite(step a) {
+    return (step){a.variable, (a.unit + 2) & 3};
+}
 
 /* Cheapest single step on a variable of the pair which lowers the number of collisions. */
 static bool best_step(const search *q, int32_t pair, step *best) {
@@ -74,8 +84,8 @@ static bool best_step(const search *q, int32_t pair, step *best) {
     return least < INFINITY;
 }
 
-/* Cheapest two steps: the first on a variable of the pair, the second on one of any pair that the first
- * leaves colliding. */
+/* Cheapest two steps: the first on a variable of the pair, the second on one of any pair that the
+ * first leaves colliding. */
 static bool best_two_steps(search *q, int32_t pair, step *first, step *second) {
     double least = INFINITY;
     for (int64_t i = q->s->start[pair]; i < q->s->start[pair + 1]; i++)

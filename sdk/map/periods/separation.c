@@ -44,8 +44,7 @@ static qc_status grow_cells(finder *f) {
     f->distance = QC__NEW(f->ctx, double, mesh->n_vertices);
     f->predecessor = QC__NEW(f->ctx, int32_t, mesh->n_vertices);
     f->cell = QC__NEW(f->ctx, int32_t, mesh->n_vertices);
-    qc_status status =
-        source && f->distance && f->predecessor && f->cell ? QC_OK : QC_ERR_NOMEM;
+    qc_status status = source && f->distance && f->predecessor && f->cell ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         for (int32_t i = 0; i < s->n_cones; i++) source[s->cone_vertex[i]] = 1;
         status = qc_mesh_shortest_paths(f->ctx, mesh, NULL, source, f->distance, f->predecessor);
@@ -106,7 +105,7 @@ static qc_status find_bridges(finder *f, double reach) {
     return QC_OK;
 }
 
-/* --- forms -------------------------------------------------------------------------------------- */
+/* --- forms ------------------------------------------------------------------------------------ */
 
 static void add_symbol(finder *f, int32_t symbol, double _Complex factor) {
     const qc__seams *s = f->seams;
@@ -121,8 +120,8 @@ static void add_corner(finder *f, int32_t c, int32_t turn, double _Complex sign)
         add_symbol(f, s->term_symbol[i], qc__turn(sign, turn + s->term_turn[i]));
 }
 
-/* Turns corner c about its vertex, into the face where the edge `to` leaves or enters it, carrying the chart;
- * counter-clockwise, or clockwise when the boundary is in the way. */
+/* Turns corner c about its vertex, into the face where the edge `to` leaves or enters it, carrying
+ * the chart; counter-clockwise, or clockwise when the boundary is in the way. */
 static bool turn_to_edge(finder *f, qc__walk *walk, int32_t *c, int32_t to) {
     const qc_mesh *mesh = f->seams->mesh;
     for (int32_t way = 0; way < 2; way++) {
@@ -150,8 +149,8 @@ static int32_t corner_in_face(const qc_mesh *mesh, int32_t c, int32_t v) {
     return -1;
 }
 
-/* Follows the path cone a - bridge - cone b: edges towards a reversed, the bridge, edges towards b. The form
- * p_b - p_a in the chart of the first face: i^-turn (f_b - T) - f_a. */
+/* Follows the path cone a - bridge - cone b: edges towards a reversed, the bridge, edges towards b.
+ * The form p_b - p_a in the chart of the first face: i^-turn (f_b - T) - f_a. */
 static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t *path) {
     const qc__seams *s = f->seams;
     const qc_mesh *mesh = s->mesh;

@@ -34,7 +34,8 @@ int32_t qc__guide_turns(const qc__guide *g, int32_t v) {
         guided_edges(g, d, &next_a, &next_b);
         /* the shared edge in both charts, which differ by the rotation of the transition */
         const int32_t h = qc_next(c), e = mesh->halfedge_edge[h];
-        const int32_t r = mesh->edge_halfedge[2 * (int64_t)e] == h ? g->rotation[e] : -g->rotation[e];
+        const int32_t r =
+            mesh->edge_halfedge[2 * (int64_t)e] == h ? g->rotation[e] : -g->rotation[e];
         sum += angle_between(qc_quarter_turn(b, r), next_a);
         c = d;
     } while (c != start);
@@ -63,13 +64,14 @@ int32_t qc__map_turns(const qc__guide *g, int32_t v) {
 enum { LARGEST_STAR = 256 };
 typedef struct star {
     int32_t n;
-    int32_t corner[LARGEST_STAR]; /* corner of v whose next corner is the neighbour                  */
-    double angle[LARGEST_STAR];   /* guided direction in the chart of that corner                    */
-    double bend[LARGEST_STAR];    /* wanted minus guided direction                                   */
+    int32_t corner[LARGEST_STAR]; /* corner of v whose next corner is the neighbour */
+    double angle[LARGEST_STAR];   /* guided direction in the chart of that corner   */
+    double bend[LARGEST_STAR]; /* wanted minus guided direction                                   */
     bool anchor[LARGEST_STAR];
 } star;
 
-/* Directions of the guiding field; neighbours which cannot move are anchors with their true direction. */
+/* Directions of the guiding field; neighbours which cannot move are anchors with their true
+ * direction. */
 static bool read_star(const qc__guide *g, int32_t v, star *s) {
     const qc__reduced_map *m = g->map;
     const int32_t start = m->mesh->vertex_corner[v];

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double theta = 0.5;       /* balance of shape and area                                 */
-static const double thinnest = 0.05;   /* least height of a target shape over its longest edge       */
+static const double theta = 0.5;     /* balance of shape and area                                 */
+static const double thinnest = 0.05; /* least height of a target shape over its longest edge */
 
 static qc_complex times(qc_complex a, qc_complex b) {
     const qc_complex c = {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
@@ -25,8 +25,8 @@ static void thicken(qc_complex e[3]) {
     e[(k + 2) % 3] = (qc_complex){-length - side.re, -side.im};
 }
 
-qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_length, qc_complex *hat,
-                               double *area) {
+qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
+                               qc_complex *hat, double *area) {
     const qc_status status = qc_tangent_edges(ctx, mesh, hat);
     if (status != QC_OK) return status;
     for (int32_t t = 0; t < mesh->n_faces; t++) {
@@ -83,8 +83,10 @@ double qc__patch_energy(const qc__patch *p, const double *x, double *gradient) {
         energy += A * top / chi;
         const double by_trace = A * (1 - theta) * 2 / chi;
         const double by_det = A * (theta * 2 * d / chi - top / chi * (0.5 * (1 + d / root)) / chi);
-        const qc_complex gu = {by_trace * du.re + by_det * dv.im, by_trace * du.im - by_det * dv.re};
-        const qc_complex gv = {by_trace * dv.re - by_det * du.im, by_trace * dv.im + by_det * du.re};
+        const qc_complex gu = {by_trace * du.re + by_det * dv.im,
+                               by_trace * du.im - by_det * dv.re};
+        const qc_complex gv = {by_trace * dv.re - by_det * du.im,
+                               by_trace * dv.im + by_det * du.re};
         for (int32_t k = 0; k < 3; k++) {
             const int64_t c = 3 * (int64_t)t + k;
             const int32_t j = p->local[p->map->mesh->face_vertex[c]];

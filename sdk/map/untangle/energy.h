@@ -1,10 +1,10 @@
 /* The untangling energy of one patch of a map. Internal to sdk/map.
  *
- * Garanzha et al. 2021 (ROBUST 6): with J the Jacobian of the map relative to the target shape of a face of
- * area A, d = det J and chi(d, eps) = (d + sqrt(eps^2 + d^2)) / 2,
- *     E = sum A [ (1 - theta) tr(J^T J) / chi + theta (1 + d^2) / chi ],
- * finite and smooth for inverted faces; eps falls with the worst determinant. The target shape is the face
- * itself in units of the quad edge length, slivers thickened. */
+ * Garanzha et al. 2021 (docs/theory/untangling.md): with J the Jacobian of the map relative to the
+ * target shape of a face of area A, d = det J and chi(d, eps) = (d + sqrt(eps^2 + d^2)) / 2, E =
+ * sum A [ (1 - theta) tr(J^T J) / chi + theta (1 + d^2) / chi ], finite and smooth for inverted
+ * faces; eps falls with the worst determinant. The target shape is the face itself in units of the
+ * quad edge length, slivers thickened. */
 #ifndef QC_MAP_UNTANGLE_ENERGY_H
 #define QC_MAP_UNTANGLE_ENERGY_H
 
@@ -12,18 +12,19 @@
 
 typedef struct qc__patch {
     const qc__reduced_map *map;
-    const qc_complex *hat; /* 3 n_faces: gradient of the hat function of each corner, target frame   */
-    const double *area;    /* n_faces: of the target shapes                                         */
+    const qc_complex
+        *hat;           /* 3 n_faces: gradient of the hat function of each corner, target frame   */
+    const double *area; /* n_faces: of the target shapes                                         */
     int32_t n_vertices, n_faces;
-    const int32_t *vertex; /* active vertices: unknowns (2j, 2j+1) of vertex j                       */
-    const int32_t *face;   /* faces with an active vertex                                           */
-    const int32_t *local;  /* mesh vertex -> j, -1                                                   */
+    const int32_t *vertex; /* active vertices: unknowns (2j, 2j+1) of vertex j */
+    const int32_t *face; /* faces with an active vertex                                           */
+    const int32_t *local; /* mesh vertex -> j, -1 */
     double eps;
 } qc__patch;
 
 /* Target shapes: hat (3 n_faces), area (n_faces). */
-qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_length, qc_complex *hat,
-                               double *area);
+qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
+                               qc_complex *hat, double *area);
 /* Energy and gradient at x (2 n_vertices). */
 double qc__patch_energy(const qc__patch *patch, const double *x, double *gradient);
 /* Lowers the energy from x until the patch is clean, or no better; x in place. */

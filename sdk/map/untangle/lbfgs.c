@@ -1,5 +1,5 @@
-/* Limited-memory BFGS (Nocedal 1980: two-loop recursion) with an Armijo line search. Curvature pairs with
- * s.y <= 0 are skipped, so every direction is a descent direction. */
+/* Limited-memory BFGS (Nocedal 1980: two-loop recursion) with an Armijo line search. Curvature
+ * pairs with s.y <= 0 are skipped, so every direction is a descent direction. */
 #include "sdk/map/untangle/lbfgs.h"
 #include <math.h>
 #include <string.h>

@@ -13,8 +13,8 @@ typedef struct qc__lbfgs_problem {
     qc_status (*precondition)(qc_ctx *ctx, void *user, double *p);
 } qc__lbfgs_problem;
 
-/* Minimises from x in place, at most max_iterations steps; stops when a step lowers the energy by less than
- * `relative` of it. *iterations (may be NULL) counts steps. */
+/* Minimises from x in place, at most max_iterations steps; stops when a step lowers the energy by
+ * less than `relative` of it. *iterations (may be NULL) counts steps. */
 qc_status qc__lbfgs(qc_ctx *ctx, const qc__lbfgs_problem *problem, int32_t max_iterations,
                     double relative, double *x, double *energy, int32_t *iterations);
 

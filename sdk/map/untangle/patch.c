@@ -1,14 +1,16 @@
-/* Minimises the untangling energy of one patch (see energy.h): L-BFGS preconditioned by the Laplacian of
- * the patch, in rounds of falling regularisation. */
+/* Minimises the untangling energy of one patch (see energy.h): L-BFGS preconditioned by the
+ * Laplacian of the patch, in rounds of falling regularisation. */
 #include "sdk/map/untangle/lbfgs.h"
 #include "sdk/map/untangle/energy.h"
 #include <math.h>
 #include <string.h>
 
-static const double eps_floor = 1e-3, eps_slope = 0.04; /* eps^2 = floor^2 + slope min(0, det)^2    */
-static const double clean_det = 0.01;                   /* one more round after the patch is clean  */
+static const double eps_floor = 1e-3, eps_slope = 0.04; /* eps^2 = floor^2 + slope min(0, det)^2 */
+static const double clean_det = 0.01; /* one more round after the patch is clean  */
 
-enum { PATIENCE = 4 }; /* rounds without a better worst determinant before giving up               */
+enum {
+    PATIENCE = 4
+}; /* rounds without a better worst determinant before giving up               */
 
 /* Preconditioner: the Laplacian of the patch in the charts of its vertices, complex Hermitian. */
 typedef struct preconditioner {
@@ -46,7 +48,8 @@ static void add_entry(entry *column, int32_t *n, int32_t row, qc_complex value) 
     ++*n;
 }
 
-/* Column j of the upper triangle; `column` has room for two entries a face at the vertex and one more. */
+/* Column j of the upper triangle; `column` has room for two entries a face at the vertex and one
+ * more. */
 static int32_t laplacian_column(const qc__patch *p, int32_t j, entry *column) {
     const qc_mesh *mesh = p->map->mesh;
     const int32_t start = mesh->vertex_corner[p->vertex[j]];
@@ -61,8 +64,7 @@ static int32_t laplacian_column(const qc__patch *p, int32_t j, entry *column) {
             if (b == c) diagonal += K;
             if (b == c || i < 0 || i > j) continue;
             const qc_complex value = {K, 0}; /* conj(i^turn_i) K i^turn_j */
-            add_entry(column, &n, i,
-                      qc_quarter_turn(value, p->map->turn[c] - p->map->turn[b]));
+            add_entry(column, &n, i, qc_quarter_turn(value, p->map->turn[c] - p->map->turn[b]));
         }
         c = qc_corner_ccw(mesh, c);
     } while (c >= 0 && c != start);
@@ -117,7 +119,8 @@ static qc_status factor_patch(qc_ctx *ctx, preconditioner *pre) {
     return status;
 }
 
-qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *p, const qc_untangle_options *options, double *x) {
+qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *p, const qc_untangle_options *options,
+                             double *x) {
     preconditioner pre = {p, NULL, NULL};
     qc_status status = factor_patch(ctx, &pre);
     const qc__lbfgs_problem problem = {2 * (int64_t)p->n_vertices, &pre, patch_evaluate,

@@ -1,4 +1,4 @@
-/* Independent values of a seamless map (see reduced_map.h; ROBUST 1 without features). */
+/* Independent values of a seamless map (see reduced_map.h; docs/theory/exact-grid.md). */
 #include "sdk/map/untangle/reduced_map.h"
 #include <math.h>
 
@@ -34,7 +34,8 @@ static qc_complex translation(const source *s, int32_t e) {
     return tau;
 }
 
-/* Composes a chart with the transition across halfedge h: f -> i^r f + tau from s to t, i^-r (f - tau) back. */
+/* Composes a chart with the transition across halfedge h: f -> i^r f + tau from s to t, i^-r (f -
+ * tau) back. */
 static void cross(const source *s, int32_t h, int8_t *turn, qc_complex *offset) {
     const int32_t e = s->mesh->halfedge_edge[h], r = s->rotation[e];
     const qc_complex tau = translation(s, e);

@@ -1,18 +1,19 @@
-/* Untangling: moves parameters near fold-overs until every face is positively oriented (ROBUST 6).
+/* Untangling: moves parameters near fold-overs until every face is positively oriented
+ * (docs/theory/untangling.md).
  *
- * Only a neighbourhood of the fold-overs moves, so that the rest of the map keeps its alignment; it grows
- * when it proves too small. Transitions and cones are kept by construction (reduced_map.h). Where the map
- * before rounding is known, the way starts there. */
+ * Only a neighbourhood of the fold-overs moves, so that the rest of the map keeps its alignment; it
+ * grows when it proves too small. Transitions and cones are kept by construction (reduced_map.h).
+ * Where the map before rounding is known, the way starts there. */
 #include "sdk/map/untangle/lbfgs.h"
 #include "sdk/map/untangle/cones.h"
 #include "sdk/map/untangle/energy.h"
 #include <math.h>
 #include <string.h>
 
-static const double good_det = 1e-4;                    /* faces below it count as folded           */
-static const double longest_step = 0.125, shortest_step = 0.125 / 8; /* of the continuation         */
+static const double good_det = 1e-4; /* faces below it count as folded           */
+static const double longest_step = 0.125, shortest_step = 0.125 / 8; /* of the continuation */
 enum {
-    GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings                                     */
+    GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings */
 };
 /* Of stars laid out anew, by growth: crowded cones want small ones, stretched places large ones. */
 static const double star_scale[GROWTHS] = {0.3, 0.6, 0.1, 1.0, 0.03};
@@ -21,30 +22,30 @@ typedef struct untangler {
     qc_ctx *ctx;
     const qc_mesh *mesh;
     qc_untangle_options options;
-    const int8_t *rotation; /* of the transitions, known from the first grid                        */
+    const int8_t *rotation;  /* of the transitions, known from the first grid  */
     qc__reduced_map *map;    /* moves */
-    qc__reduced_map *target; /* the rounded map                                                      */
-    qc__guide guide; /* cross NULL: the map does not tell                                          */
+    qc__reduced_map *target; /* the rounded map */
+    qc__guide guide;         /* cross NULL: the map does not tell         */
     qc_complex *edge;
     qc_complex *hat;
     double *area;
-    int32_t *distance; /* n_vertices: rings from the nearest bad face, -1 = far                      */
+    int32_t *distance; /* n_vertices: rings from the nearest bad face, -1 = far */
     int32_t *queue;    /* n_vertices */
-    int32_t *local;          /* n_vertices: number in the patch, -1                                   */
-    int32_t *vertex;         /* n_vertices: of the patch                                             */
+    int32_t *local;    /* n_vertices: number in the patch, -1                                   */
+    int32_t *vertex;   /* n_vertices: of the patch                                             */
     int32_t n_patch;
-    int32_t *face;           /* n_faces: of the patch                                                */
+    int32_t *face; /* n_faces: of the patch                                                */
     int32_t n_patch_faces;
-    int32_t *face_stamp;     /* n_faces: last patch a face was listed in                             */
+    int32_t *face_stamp; /* n_faces: last patch a face was listed in                             */
     int32_t stamp;
-    uint8_t *frozen;         /* n_vertices: stars laid out anew keep still while the rest adapts         */
+    uint8_t *frozen; /* n_vertices: stars laid out anew keep still while the rest adapts         */
     double star_scale;
-    int32_t *active;         /* n_vertices: of the patch, without the frozen ones                    */
-    double *x;               /* 2 n_vertices                                                         */
-    qc_complex *saved;       /* n_vertices: values of the patch before it was touched                */
+    int32_t *active;   /* n_vertices: of the patch, without the frozen ones                    */
+    double *x;         /* 2 n_vertices                                                         */
+    qc_complex *saved; /* n_vertices: values of the patch before it was touched                */
 } untangler;
 
-/* --- neighbourhoods ----------------------------------------------------------------------------- */
+/* --- neighbourhoods --------------------------------------------------------------------------- */
 
 static double face_det(const untangler *u, int32_t t) {
     qc_complex f[3];
@@ -72,7 +73,8 @@ static void mark(untangler *u, int32_t v, int32_t *n_queue) {
     u->queue[(*n_queue)++] = v;
 }
 
-/* Rings about the folded faces and the wrong cones, up to `rings`; returns the number of bad places. */
+/* Rings about the folded faces and the wrong cones, up to `rings`; returns the number of bad
+ * places. */
 static int32_t mark_neighbourhood(untangler *u, int32_t rings) {
     const qc_mesh *mesh = u->mesh;
     int32_t n = 0, bad = 0;
@@ -131,7 +133,7 @@ static void collect_patch(untangler *u, int32_t seed) {
     }
 }
 
-/* --- one patch ---------------------------------------------------------------------------------- */
+/* --- one patch -------------------------------------------------------------------------------- */
 
 static void freeze_star(untangler *u, int32_t v, uint8_t value) {
     const int32_t start = u->mesh->vertex_corner[v];
@@ -142,7 +144,8 @@ static void freeze_star(untangler *u, int32_t v, uint8_t value) {
     } while (c >= 0 && c != start);
 }
 
-/* Lays out anew and freezes the stars of wrong cones on the faces of the patch; returns whether there are. */
+/* Lays out anew and freezes the stars of wrong cones on the faces of the patch; returns whether
+ * there are. */
 static bool lay_out_wrong_cones(untangler *u) {
     bool any = false;
     for (int32_t i = 0; i < 3 * u->n_patch_faces; i++) {
@@ -194,7 +197,8 @@ static qc_status minimise(untangler *u) {
     return status;
 }
 
-/* Untangles the collected patch as far as possible; a patch which does not improve stays as it was. */
+/* Untangles the collected patch as far as possible; a patch which does not improve stays as it was.
+ */
 static qc_status untangle_patch(untangler *u) {
     const int32_t before = count_bad(u);
     for (int32_t j = 0; j < u->n_patch; j++) u->saved[j] = u->map->value[u->vertex[j]];
@@ -214,7 +218,7 @@ static qc_status untangle_patch(untangler *u) {
 /* All patches within `rings` of a bad place; *bad = how many there were. */
 static qc_status untangle_rings(untangler *u, int32_t rings, int32_t *bad) {
     *bad = mark_neighbourhood(u, rings);
-    for (int32_t v = 0; v < u->mesh->n_vertices && *bad > 0; v++) {
+    for (int32_t v = 0; v<u->mesh->n_vertices && * bad> 0; v++) {
         if (u->distance[v] < 0 || u->map->pinned[v]) continue;
         collect_patch(u, v);
         const qc_status status = untangle_patch(u);
@@ -223,7 +227,7 @@ static qc_status untangle_rings(untangler *u, int32_t rings, int32_t *bad) {
     return QC_OK;
 }
 
-/* --- the whole ---------------------------------------------------------------------------------- */
+/* --- the whole -------------------------------------------------------------------------------- */
 
 static qc_status corners_of(untangler *u, const qc_corner_map *like, qc_corner_map **out) {
     const int64_t n_corners = 3 * (int64_t)u->mesh->n_faces;
@@ -263,8 +267,8 @@ static qc_status allocate(untangler *u) {
     u->vertex = QC__NEW(u->ctx, int32_t, nv);
     u->face = QC__NEW(u->ctx, int32_t, nf);
     u->face_stamp = QC__ZERO(u->ctx, int32_t, nf);
-    if (!u->hat || !u->edge || !u->area || !u->distance || !u->queue || !u->active || !u->x || !u->saved || !u->frozen || !u->local || !u->vertex || !u->face ||
-        !u->face_stamp)
+    if (!u->hat || !u->edge || !u->area || !u->distance || !u->queue || !u->active || !u->x ||
+        !u->saved || !u->frozen || !u->local || !u->vertex || !u->face || !u->face_stamp)
         return QC_ERR_NOMEM;
     for (int32_t v = 0; v < nv; v++) u->local[v] = -1;
     return QC_OK;
@@ -293,7 +297,8 @@ static qc_status make_guide(untangler *u, const qc_corner_map *map) {
     return QC_OK;
 }
 
-/* Cones of full turns have no holonomy; the guiding field tells them, and they stay on their lattice point. */
+/* Cones of full turns have no holonomy; the guiding field tells them, and they stay on their
+ * lattice point. */
 static void pin_full_turns(untangler *u) {
     for (int32_t v = 0; v < u->mesh->n_vertices && u->guide.cross; v++) {
         if (u->map->pinned[v] || qc_vertex_on_boundary(u->mesh, v)) continue;
@@ -322,9 +327,9 @@ static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_m
 static void release(untangler *u) {
     qc__reduced_map_free(u->map);
     qc__reduced_map_free(u->target);
-    void *const blocks[] = {u->hat,    u->edge, u->area,       u->distance, u->queue, u->local,
-                            u->vertex, u->face, u->face_stamp, u->frozen,   u->active, u->x,
-                            u->saved};
+    void *const blocks[] = {u->hat,    u->edge,   u->area, u->distance,   u->queue,
+                            u->local,  u->vertex, u->face, u->face_stamp, u->frozen,
+                            u->active, u->x,      u->saved};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
 }
 
@@ -341,13 +346,15 @@ static qc_status exact_result(untangler *u, const qc_corner_map *map, const qc_g
         status = QC_OK;
         qc__clear_error(u->ctx);
     }
-    if (status == QC_OK) status = qc_grid_map_to_corner_map(u->ctx, after ? after : before, map, out);
+    if (status == QC_OK)
+        status = qc_grid_map_to_corner_map(u->ctx, after ? after : before, map, out);
     qc_object_release(after);
     return status;
 }
 
 /* Until no bad place is left, with growing neighbourhoods. */
-static qc_status untangle_growing(untangler *u, int32_t growths, double lo, double hi, int32_t *bad) {
+static qc_status untangle_growing(untangler *u, int32_t growths, double lo, double hi,
+                                  int32_t *bad) {
     qc_status status = QC_OK;
     *bad = 1;
     for (int32_t i = 0, rings = 3; i < growths && status == QC_OK && *bad > 0; i++, rings *= 2) {
@@ -360,8 +367,8 @@ static qc_status untangle_growing(untangler *u, int32_t growths, double lo, doub
     return status;
 }
 
-/* How far vertices go on the whole way. Cones which wind wrong in the rounded map take their stars along: the harmonic
- * displacement would fold them at once. */
+/* How far vertices go on the whole way. Cones which wind wrong in the rounded map take their stars
+ * along: the harmonic displacement would fold them at once. */
 static void plan_drift(untangler *u, const qc__reduced_map *relaxed, qc_complex *drift) {
     const qc__reduced_map *end = u->target;
     for (int32_t v = 0; v < u->mesh->n_vertices; v++)
@@ -374,19 +381,18 @@ static void plan_drift(untangler *u, const qc__reduced_map *relaxed, qc_complex 
         do {
             const int32_t n = qc_next(c), w = u->mesh->face_vertex[n];
             const qc_complex own = qc_quarter_turn(drift[v], end->turn[c]);
-            const qc_complex there = {
-                own.re + (end->offset[c].re - relaxed->offset[c].re) -
-                    (end->offset[n].re - relaxed->offset[n].re),
-                own.im + (end->offset[c].im - relaxed->offset[c].im) -
-                    (end->offset[n].im - relaxed->offset[n].im)};
+            const qc_complex there = {own.re + (end->offset[c].re - relaxed->offset[c].re) -
+                                          (end->offset[n].re - relaxed->offset[n].re),
+                                      own.im + (end->offset[c].im - relaxed->offset[c].im) -
+                                          (end->offset[n].im - relaxed->offset[n].im)};
             if (!u->map->pinned[w]) drift[w] = qc_quarter_turn(there, -end->turn[n]);
             c = qc_corner_ccw(u->mesh, c);
         } while (c >= 0 && c != start);
     }
 }
 
-/* Moves the working map from `from` to `to` on the way from the relaxed (0) to the rounded map (1): transitions
- * and cones exactly, other vertices by their share of the difference. */
+/* Moves the working map from `from` to `to` on the way from the relaxed (0) to the rounded map (1):
+ * transitions and cones exactly, other vertices by their share of the difference. */
 static void advance(untangler *u, const qc__reduced_map *relaxed, const qc_complex *drift,
                     double from, double to) {
     const qc__reduced_map *end = u->target;
@@ -404,8 +410,9 @@ static void advance(untangler *u, const qc__reduced_map *relaxed, const qc_compl
     }
 }
 
-/* Continuation: the relaxed map rarely folds; on the way to the rounded one each step folds little, so the cones
- * keep their winding. A step that leaves fold-overs is taken back and halved, down to shortest_step. */
+/* Continuation: the relaxed map rarely folds; on the way to the rounded one each step folds little,
+ * so the cones keep their winding. A step that leaves fold-overs is taken back and halved, down to
+ * shortest_step. */
 static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
                                    const qc_complex *drift, qc_complex *stable) {
     const size_t size = sizeof *stable * (size_t)u->mesh->n_vertices;
@@ -426,7 +433,7 @@ static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
             step *= 0.5;
             continue;
         }
-        stuck |= folds; /* smaller steps do not help either: walk on for the sake of the others      */
+        stuck |= folds; /* smaller steps do not help either: walk on for the sake of the others */
         at = to;
         if (2 * step <= longest_step) step *= 2;
     }

@@ -10,8 +10,9 @@ extern const qc_stage qc_stage_repair, qc_stage_features, qc_stage_size, qc_stag
 static qc_polygon_mesh *cube(qc_ctx *ctx) {
     enum { N = 8 };
     qc_polygon_mesh *soup = NULL;
-    assert_int_equal(qc_polygon_mesh_create(ctx, 6 * (N + 1) * (N + 1), 6 * N * N, 24 * N * N, 0, 0, 0, &soup),
-                     QC_OK);
+    assert_int_equal(
+        qc_polygon_mesh_create(ctx, 6 * (N + 1) * (N + 1), 6 * N * N, 24 * N * N, 0, 0, 0, &soup),
+        QC_OK);
     int32_t v = 0, f = 0;
     for (int side = 0; side < 6; side++) {
         int a = side / 2, b = (a + 1 + side % 2) % 3, c = 3 - a - b, first = v;

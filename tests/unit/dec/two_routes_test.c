@@ -1,7 +1,7 @@
-/* E_D by two routes (DESIGN 3): from the co-potential, and as the minimum of 1/2 int |grad f - Z|^2
- * over the maps of the cut surface which are seamless up to free translations. The second is solved
- * densely: one unknown per vertex of the open surface, one equation per cut edge, both as they are
- * written down, in orthonormal frames. Agreement to 13 digits pins every sign. */
+/* E_D by two routes (docs/conventions.md): from the co-potential, and as the minimum of 1/2 int
+ * |grad f - Z|^2 over the maps of the cut surface which are seamless up to free translations. The
+ * second is solved densely: one unknown per vertex of the open surface, one equation per cut edge,
+ * both as they are written down, in orthonormal frames. Agreement to 13 digits pins every sign. */
 #include <lapacke.h>
 
 #include "unit/dec/forms.h"

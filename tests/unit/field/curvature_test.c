@@ -11,7 +11,8 @@ static void around_the_axis(const double p[3], double out[3]) {
 }
 
 typedef struct deviation {
-    double mean, kappa; /* mean angle to the exact cross; mean larger curvature, faces away from the boundary */
+    double mean, kappa; /* mean angle to the exact cross; mean larger curvature, faces away from the
+                           boundary */
 } deviation;
 
 static deviation measure(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator, double radius,
@@ -41,7 +42,8 @@ static deviation measure(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator, do
     return (deviation){d.mean / (double)n, d.kappa / (double)n};
 }
 
-/* The larger curvature of a cylinder is across its axis: this also fixes which direction comes first. */
+/* The larger curvature of a cylinder is across its axis: this also fixes which direction comes
+ * first. */
 static void cylinders_bend_around_their_axis(void **state) {
     qc_ctx *ctx = *state;
     qc_mesh *mesh = grid(ctx, CYLINDER, 40, 26, 1);
@@ -91,7 +93,8 @@ static void directions_converge(void **state) {
 
 static void scale_changes_curvature_only(void **state) {
     qc_ctx *ctx = *state;
-    qc_mesh *one = ellipsoid(ctx, 24, 15, 1, 1.5, 2), *other = ellipsoid(ctx, 24, 15, 1e6, 1.5e6, 2e6);
+    qc_mesh *one = ellipsoid(ctx, 24, 15, 1, 1.5, 2),
+            *other = ellipsoid(ctx, 24, 15, 1e6, 1.5e6, 2e6);
     size_t F = (size_t)one->n_faces;
     qc_complex *x = malloc(sizeof *x * F), *y = malloc(sizeof *y * F);
     double *k = malloc(sizeof *k * 2 * F), *l = malloc(sizeof *l * 2 * F);
@@ -128,9 +131,9 @@ static void threads_give_the_same_bits(void **state) {
         qc_mesh *mesh = ellipsoid(ctx, 60, 40, 1, 1.5, 2);
         bytes = sizeof **x * (size_t)mesh->n_faces;
         x[i] = malloc(bytes);
-        assert_int_equal(qc_field_curvature(ctx, mesh, QC_CURVATURE_COHEN_STEINER_MORVAN, 0.2, x[i],
-                                            NULL),
-                         QC_OK);
+        assert_int_equal(
+            qc_field_curvature(ctx, mesh, QC_CURVATURE_COHEN_STEINER_MORVAN, 0.2, x[i], NULL),
+            QC_OK);
         qc_object_release(mesh);
         qc_ctx_free(ctx);
     }

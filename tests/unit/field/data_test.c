@@ -51,11 +51,11 @@ static void reference_fields_have_their_indices(void **state) {
 
 static void index_sums_hold_on_all_meshes(void **state) {
     qc_ctx *ctx = *state;
-    const char *names[] = {"3holes.off",  "armadillo.obj", "beetle.off",    "botijo.obj",
-                           "bumpy.off",   "bunny.off",     "camelhead.off", "cow.off",
-                           "cylinder.obj", "elephant.obj", "fandisk.off",   "fertility.off",
-                           "planexy.off", "rocker-arm.obj", "screwdriver.off", "stanford-bunny.obj",
-                           "suzanne.obj"};
+    const char *names[] = {
+        "3holes.off",         "armadillo.obj", "beetle.off",  "botijo.obj",     "bumpy.off",
+        "bunny.off",          "camelhead.off", "cow.off",     "cylinder.obj",   "elephant.obj",
+        "fandisk.off",        "fertility.off", "planexy.off", "rocker-arm.obj", "screwdriver.off",
+        "stanford-bunny.obj", "suzanne.obj"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char name[64];
         snprintf(name, sizeof name, "meshes/%s", names[i]);

@@ -37,7 +37,8 @@ static void written_fields_come_back(void **state) {
     free(x);
 }
 
-/* Two triangles in the plane z = 0, of a file with three faces of which the middle one was dropped. */
+/* Two triangles in the plane z = 0, of a file with three faces of which the middle one was dropped.
+ */
 static qc_mesh *two_triangles(qc_ctx *ctx) {
     const double p[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
     const int32_t f[6] = {0, 1, 2, 0, 2, 3}, source[2] = {0, 2};
@@ -79,17 +80,17 @@ static void bad_files_are_named_by_line(void **state) {
         {"", 1},
         {"4", 1},
         {"four 3\n", 1},
-        {"6 3\n", 1},                          /* N */
-        {"4 2\n", 1},                          /* fewer faces than the file of the mesh */
-        {"4 2000000000\n", 1},                 /* a count which cannot be */
+        {"6 3\n", 1},          /* N */
+        {"4 2\n", 1},          /* fewer faces than the file of the mesh */
+        {"4 2000000000\n", 1}, /* a count which cannot be */
         {"4 -3\n", 1},
-        {"1 3\n1 0 0\n0 0 1\n1 0\n", 5},       /* truncated */
+        {"1 3\n1 0 0\n0 0 1\n1 0\n", 5}, /* truncated */
         {"1 3\n1 0 0\n0 0 1\n1 0 x\n", 4},
         {"1 3\n1 0 0\n0 0 1\n1 nan 0\n", 4},
         {"1 3\n1 0 0\n0 0 1\n1 1e999 0\n", 4},
-        {"1 3\n1 0 0\n0 0 1\n0 0 0\n", 4},     /* zero */
-        {"1 3\n0 0 1\n0 0 1\n1 0 0\n", 2},     /* perpendicular */
-        {"1 3\n1 0 0\n0 0 1\n1 0 0\n7\n", 5},  /* too long */
+        {"1 3\n1 0 0\n0 0 1\n0 0 0\n", 4},    /* zero */
+        {"1 3\n0 0 1\n0 0 1\n1 0 0\n", 2},    /* perpendicular */
+        {"1 3\n1 0 0\n0 0 1\n1 0 0\n7\n", 5}, /* too long */
     };
     const char *path = scratch_path("c");
     qc_mesh *mesh = two_triangles(ctx);

@@ -1,5 +1,5 @@
-/* Indices of any field sum to 4 chi; the matching does not depend on scale, threads or the choice of x among
- * the four directions of a cross. */
+/* Indices of any field sum to 4 chi; the matching does not depend on scale, threads or the choice
+ * of x among the four directions of a cross. */
 #include "surfaces.h"
 
 static void random_fields_sum_to_four_chi(void **state) {
@@ -62,8 +62,9 @@ static void quarter_turns_change_the_matching_only_by_the_gauge(void **state) {
     free(x);
 }
 
-/* One more quarter turn at an edge takes pi/2 from theta. s lies left of the edge, so s -> t is clockwise about
- * its start, which gains a quarter, and counter-clockwise about its end, which loses one. */
+/* One more quarter turn at an edge takes pi/2 from theta. s lies left of the edge, so s -> t is
+ * clockwise about its start, which gains a quarter, and counter-clockwise about its end, which
+ * loses one. */
 static void given_matchings_move_indices(void **state) {
     qc_ctx *ctx = *state;
     qc_mesh *mesh = grid(ctx, TORUS, 10, 7, 1);
@@ -99,7 +100,8 @@ static void scale_does_not_matter(void **state) {
     }
     for (int i = 0; i < 3; i++) {
         assert_memory_equal(m[i]->m, m[1]->m, (size_t)mesh[1]->n_edges);
-        assert_memory_equal(m[i]->index4, m[1]->index4, sizeof(int32_t) * (size_t)mesh[1]->n_vertices);
+        assert_memory_equal(m[i]->index4, m[1]->index4,
+                            sizeof(int32_t) * (size_t)mesh[1]->n_vertices);
     }
     for (int i = 0; i < 3; i++) {
         qc_object_release(m[i]);

@@ -1,4 +1,5 @@
-/* Smoothing (5.3): the energy falls, its gradient vanishes at the result, the rest of the contract. */
+/* Smoothing (5.3): the energy falls, its gradient vanishes at the result, the rest of the contract.
+ */
 #include "surfaces.h"
 
 typedef struct guided {
@@ -31,10 +32,12 @@ static void release(guided *g) {
     free(g->trusted);
 }
 
-/* Energy (5.3) of x and its derivative by the rotation of each face (3 n_faces may be slivers: none here). */
+/* Energy (5.3) of x and its derivative by the rotation of each face (3 n_faces may be slivers: none
+ * here). */
 static double energy(qc_ctx *ctx, const guided *g, double lambda, double *gradient) {
     const qc_mesh *mesh = g->mesh;
-    double *area = malloc(sizeof *area * g->F), *length = malloc(sizeof *length * (size_t)mesh->n_edges);
+    double *area = malloc(sizeof *area * g->F),
+           *length = malloc(sizeof *length * (size_t)mesh->n_edges);
     assert_int_equal(qc_mesh_geometry(ctx, mesh, length, area, NULL, NULL, NULL, NULL), QC_OK);
     qc_matching *m = match(ctx, mesh, g->x);
     double E = 0, l = sqrt(mesh->area) / 100;
@@ -70,9 +73,9 @@ static void rounds_lower_the_energy_to_a_critical_point(void **state) {
             double *gradient = malloc(sizeof *gradient * g.F), largest = 0;
             double before = energy(ctx, &g, lambdas[i], gradient), E = before;
             for (int round = 0; round < 60; round++) {
-                assert_int_equal(qc_field_smooth(ctx, mesh, g.guide, g.weight, g.trusted, lambdas[i],
-                                                 1, g.x),
-                                 QC_OK);
+                assert_int_equal(
+                    qc_field_smooth(ctx, mesh, g.guide, g.weight, g.trusted, lambdas[i], 1, g.x),
+                    QC_OK);
                 double after = energy(ctx, &g, lambdas[i], gradient);
                 assert_true(after <= E * (1 + 1e-9));
                 E = after;
@@ -92,7 +95,8 @@ static void many_rounds_are_one_round_many_times(void **state) {
     qc_complex *y = malloc(sizeof *y * g.F);
     memcpy(y, g.guide, sizeof *y * g.F);
     for (int i = 0; i < 3; i++)
-        assert_int_equal(qc_field_smooth(ctx, g.mesh, g.guide, g.weight, g.trusted, 0.7, 1, g.x), QC_OK);
+        assert_int_equal(qc_field_smooth(ctx, g.mesh, g.guide, g.weight, g.trusted, 0.7, 1, g.x),
+                         QC_OK);
     assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, 0.7, 3, y), QC_OK);
     for (size_t t = 0; t < g.F; t++) assert_true(cross_angle(g.x[t], y[t]) < 1e-9);
     free(y);
@@ -121,7 +125,8 @@ static void scale_and_threads_do_not_matter(void **state) {
         assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
         double s = i == 2 ? 1e6 : 1;
         guided g = random_guide(ctx, ellipsoid(ctx, 40, 25, s, 1.5 * s, 2 * s), 9);
-        assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, 0.8, 20, g.x), QC_OK);
+        assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, 0.8, 20, g.x),
+                         QC_OK);
         qc_matching *match_i = match(ctx, g.mesh, g.x);
         F = g.F;
         E = (size_t)g.mesh->n_edges;
@@ -147,7 +152,8 @@ static void bad_arguments_leave_the_field_alone(void **state) {
     qc_ctx *ctx = *state;
     guided g = random_guide(ctx, grid(ctx, PLANE, 3, 3, 1), 10);
     assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, 1.1, 5, g.x), QC_ERR_ARGUMENT);
-    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, (double)NAN, 5, g.x), QC_ERR_ARGUMENT);
+    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, (double)NAN, 5, g.x),
+                     QC_ERR_ARGUMENT);
     assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, 0.5, 0, g.x), QC_OK);
     assert_memory_equal(g.x, g.guide, sizeof *g.x * g.F);
     release(&g);

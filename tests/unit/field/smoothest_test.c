@@ -24,7 +24,8 @@ static void few_singularities_on_simple_surfaces(void **state) {
     free(y);
 }
 
-/* A flat square and a cylinder carry parallel fields: all theta vanish although the matrix is singular. */
+/* A flat square and a cylinder carry parallel fields: all theta vanish although the matrix is
+ * singular. */
 static void flat_surfaces_get_parallel_fields(void **state) {
     qc_ctx *ctx = *state;
     for (int kind = 0; kind < 2; kind++) {
@@ -115,7 +116,8 @@ static void eigenvectors_have_no_residual(void **state) {
     qc_object_release(mesh);
 }
 
-/* Noise in the guide makes pairs; the flow closes those nearer than the detail and keeps the sum. */
+/* Noise in the guide makes pairs; the flow closes those nearer than the detail and keeps the sum.
+ */
 static void detail_closes_pairs(void **state) {
     qc_ctx *ctx = *state;
     qc_mesh *mesh = ellipsoid(ctx, 60, 40, 1, 1, 1);
@@ -161,7 +163,8 @@ static void threads_give_the_same_bits(void **state) {
     free(x[1]);
 }
 
-/* A cap closed by a fan whose faces all follow the rim holds 4/4 at its apex; freed, it is regular inside. */
+/* A cap closed by a fan whose faces all follow the rim holds 4/4 at its apex; freed, it is regular
+ * inside. */
 static void crowded_indices_are_shared(void **state) {
     enum { N = 12 };
     qc_ctx *ctx = *state;

@@ -36,8 +36,8 @@ static inline double uniform(uint64_t *state) {
 
 enum { PLANE, CYLINDER, TORUS };
 
-/* n x m cells split along alternating diagonals. PLANE: [0,1]^2; CYLINDER: radius 1, height 4, open;
- * TORUS: radii 3 and 1. */
+/* n x m cells split along alternating diagonals. PLANE: [0,1]^2; CYLINDER: radius 1, height 4,
+ * open; TORUS: radii 3 and 1. */
 static inline qc_mesh *grid(qc_ctx *ctx, int kind, int n, int m, double scale) {
     int nv = n + (kind == PLANE), mv = m + (kind != TORUS), f = 0;
     double *p = malloc(sizeof *p * 3 * (size_t)(nv * mv));
@@ -66,7 +66,8 @@ static inline qc_mesh *grid(qc_ctx *ctx, int kind, int n, int m, double scale) {
     return out;
 }
 
-/* Ellipsoid x = a cos u cos v, y = b sin u cos v, z = c sin v with two polar caps; 2 n (m - 1) faces. */
+/* Ellipsoid x = a cos u cos v, y = b sin u cos v, z = c sin v with two polar caps; 2 n (m - 1)
+ * faces. */
 static inline qc_mesh *ellipsoid(qc_ctx *ctx, int n, int m, double a, double b, double c) {
     int V = n * (m - 1) + 2, F = 2 * n * (m - 1), f = 0;
     double *p = malloc(sizeof *p * 3 * (size_t)V);
@@ -91,8 +92,12 @@ static inline qc_mesh *ellipsoid(qc_ctx *ctx, int n, int m, double a, double b, 
                 memcpy(t + 3 * f++, s, sizeof s);
             } else { /* row j is shifted by half a cell when j is even (rows count from 1) */
                 bool shifted = j % 2;
-                int32_t s[6] = {low + i, low + k, shifted ? high + k : high + i,
-                                low + i, shifted ? high + k : high + i, high + i};
+                int32_t s[6] = {low + i,
+                                low + k,
+                                shifted ? high + k : high + i,
+                                low + i,
+                                shifted ? high + k : high + i,
+                                high + i};
                 int32_t o[6] = {low + i, low + k, high + i, low + k, high + k, high + i};
                 memcpy(t + 3 * f, shifted ? s : o, sizeof s);
                 f += 2;
@@ -153,10 +158,11 @@ static inline void centroid(const qc_mesh *mesh, size_t t, double out[3]) {
 static inline const char *data_path(const char *name) {
     static char path[4096];
     const char *root = getenv("QC_TEST_DATA"), *tests = strstr(__FILE__, "tests/unit");
-    if (root) snprintf(path, sizeof path, "%s/%s", root, name);
+    if (root)
+        snprintf(path, sizeof path, "%s/%s", root, name);
     else
-        snprintf(path, sizeof path, "%.*s../shared/%s", tests ? (int)(tests - __FILE__) : 0, __FILE__,
-                 name);
+        snprintf(path, sizeof path, "%.*s../shared/%s", tests ? (int)(tests - __FILE__) : 0,
+                 __FILE__, name);
     FILE *file = fopen(path, "rb");
     if (file) fclose(file);
     return file ? path : NULL;

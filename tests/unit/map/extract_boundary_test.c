@@ -33,8 +33,8 @@ static maps_list plane_with_holes(int n, int k, double angle, int n_holes, const
     return l;
 }
 
-/* Cells which rectangular holes leave: pieces of half a cell or more without a hole inside; one less
- * where a hole would close. No two holes meet one cell. */
+/* Cells which rectangular holes leave: pieces of half a cell or more without a hole inside; one
+ * less where a hole would close. No two holes meet one cell. */
 static int32_t cells_left(int n, int k, int n_holes, const int (*hole)[4]) {
     int32_t count = n * n;
     for (int i = 0; i < n_holes; i++) {

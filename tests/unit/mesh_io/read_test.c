@@ -57,7 +57,7 @@ static void test_obj_corners(void **state) {
 
 static void test_obj_layout(void **state) {
     /* faces before vertices, byte order mark, CR line ends, continued lines, comment with backslash
- */
+     */
     qc_polygon_mesh *m = parse_text(*state,
                                     "\xef\xbb\xbf# note \\\rf 1 \\\r 2 \\\r\n3\r"
                                     "\tv 0 0 \\\n 0\rv 1 0 0\rv 0 1 0",
