@@ -41,10 +41,10 @@ static void imported_fields_keep_their_indices(void **state) {
         qc_matching *matching = NULL;
         qc_report *report = NULL;
         snprintf(name, sizeof name, "fields/%s", c->mesh);
-        assert_int_equal(qc_polygon_mesh_read(ctx, golden_data(name, path), &soup), QC_OK);
+        assert_int_equal(qc_polygon_mesh_read(ctx, test_data(name, path), &soup), QC_OK);
         assert_int_equal(qc_mesh_repair(ctx, soup, &mesh, &repairs), QC_OK);
         snprintf(name, sizeof name, "fields/%s", c->field);
-        assert_int_equal(qc_face_field_read(ctx, mesh, golden_data(name, path), &field), QC_OK);
+        assert_int_equal(qc_face_field_read(ctx, mesh, test_data(name, path), &field), QC_OK);
         assert_int_equal(qc_matching_create(ctx, field, NULL, &matching), QC_OK);
         assert_int_equal(qc_report_create(ctx, &report), QC_OK);
         assert_int_equal(qc_report_measure(ctx, mesh, NULL, matching, NULL, NULL, report), QC_OK);
@@ -68,9 +68,9 @@ static void imported_fields_make_quads(void **state) {
         qc_polygon_mesh *soup = NULL;
         qc_remesh_result result = {0};
         snprintf(name, sizeof name, "fields/%s", c->mesh);
-        assert_int_equal(qc_polygon_mesh_read(ctx, golden_data(name, mesh), &soup), QC_OK);
+        assert_int_equal(qc_polygon_mesh_read(ctx, test_data(name, mesh), &soup), QC_OK);
         snprintf(name, sizeof name, "fields/%s", c->field);
-        golden(ctx, c->field, soup, 5000, golden_data(name, field), expected_failure, &result);
+        golden(ctx, c->field, soup, 5000, test_data(name, field), expected_failure, &result);
         if (result.report) check_indices(c, result.report);
         qc_remesh_result_clear(&result);
         qc_object_release(soup);
@@ -79,7 +79,7 @@ static void imported_fields_make_quads(void **state) {
 }
 
 int main(void) {
-    const int skip = golden_skip_without_data();
+    const int skip = test_data_missing();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(imported_fields_keep_their_indices),
         cmocka_unit_test(imported_fields_make_quads),

@@ -4,6 +4,7 @@
 #ifndef QC_TESTS_GOLDEN_H
 #define QC_TESTS_GOLDEN_H
 
+#include "tests/test_data.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -137,25 +138,6 @@ static inline void golden(qc_ctx *ctx, const char *name, const qc_polygon_mesh *
         fail_msg("%s fails in another way: %s: %s", name, error->stage, error->text);
     print_message("%s, %g quads, fails as expected: %s: %s\n", name, quads, error->stage,
                   error->text);
-}
-
-/* "$QC_TEST_DATA/name", by default beside the source tree. */
-static inline const char *golden_data(const char *name, char path[4096]) {
-    const char *root = getenv("QC_TEST_DATA"), *tests = strstr(__FILE__, "tests/golden");
-    if (root)
-        snprintf(path, 4096, "%s/%s", root, name);
-    else
-        snprintf(path, 4096, "%.*s../shared/%s", tests ? (int)(tests - __FILE__) : 0, __FILE__,
-                 name);
-    return path;
-}
-
-static inline int golden_skip_without_data(void) {
-    char path[4096];
-    FILE *file = fopen(golden_data("fields/eight.off", path), "rb");
-    if (file) return fclose(file);
-    puts("skipped: no test data (set QC_TEST_DATA)");
-    return 77;
 }
 
 #endif

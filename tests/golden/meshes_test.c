@@ -15,7 +15,7 @@ static void ten_thousand_quads(void **state) {
     (void)state;
     char folder[4096], path[8192];
     struct dirent **entry = NULL;
-    const int n = scandir(golden_data("meshes", folder), &entry, is_mesh, alphasort);
+    const int n = scandir(test_data("meshes", folder), &entry, is_mesh, alphasort);
     assert_true(n > 0);
     for (int i = 0; i < n; i++) {
         qc_ctx *ctx = golden_context(2);
@@ -33,7 +33,7 @@ static void ten_thousand_quads(void **state) {
 }
 
 int main(void) {
-    const int skip = golden_skip_without_data();
+    const int skip = test_data_missing();
     const struct CMUnitTest tests[] = {cmocka_unit_test(ten_thousand_quads)};
     return skip ? skip : cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,13 +1,13 @@
 /* Reference fields have the indices their authors drew; index sums hold on every data mesh. */
+#include "tests/test_data.h"
 #include "surfaces.h"
 
 static qc_mesh *read_mesh(qc_ctx *ctx, const char *name) {
-    const char *path = data_path(name);
+    char path[TEST_DATA_PATH];
     qc_polygon_mesh *soup = NULL;
     qc_mesh *mesh = NULL;
     qc_repair_report *report = NULL;
-    if (!path) return NULL;
-    assert_int_equal(qc_polygon_mesh_read(ctx, path, &soup), QC_OK);
+    assert_int_equal(qc_polygon_mesh_read(ctx, test_data(name, path), &soup), QC_OK);
     assert_int_equal(qc_mesh_repair(ctx, soup, &mesh, &report), QC_OK);
     qc_object_release(soup);
     qc_object_release(report);
@@ -31,8 +31,10 @@ static void reference_fields_have_their_indices(void **state) {
         qc_mesh *mesh = read_mesh(ctx, cases[i].mesh);
         qc_face_field *field = NULL;
         qc_matching *m = NULL;
+        char path[TEST_DATA_PATH];
         assert_non_null(mesh);
-        assert_int_equal(qc_face_field_read(ctx, mesh, data_path(cases[i].field), &field), QC_OK);
+        assert_int_equal(qc_face_field_read(ctx, mesh, test_data(cases[i].field, path), &field),
+                         QC_OK);
         assert_int_equal(qc_matching_create(ctx, field, NULL, &m), QC_OK);
         int minus = 0, plus = 0;
         for (int32_t v = 0; v < mesh->n_vertices; v++) {
@@ -71,10 +73,8 @@ static void index_sums_hold_on_all_meshes(void **state) {
 }
 
 int main(void) {
-    if (!data_path("fields/eight.off")) {
-        puts("skipped: no test data (set QC_TEST_DATA)");
-        return 77;
-    }
+    const int skip = test_data_missing();
+    if (skip) return skip;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reference_fields_have_their_indices),
         cmocka_unit_test(index_sums_hold_on_all_meshes),

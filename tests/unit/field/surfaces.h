@@ -154,18 +154,4 @@ static inline void centroid(const qc_mesh *mesh, size_t t, double out[3]) {
     }
 }
 
-/* "$QC_TEST_DATA/name", by default beside the source tree; NULL when absent. */
-static inline const char *data_path(const char *name) {
-    static char path[4096];
-    const char *root = getenv("QC_TEST_DATA"), *tests = strstr(__FILE__, "tests/unit");
-    if (root)
-        snprintf(path, sizeof path, "%s/%s", root, name);
-    else
-        snprintf(path, sizeof path, "%.*s../shared/%s", tests ? (int)(tests - __FILE__) : 0,
-                 __FILE__, name);
-    FILE *file = fopen(path, "rb");
-    if (file) fclose(file);
-    return file ? path : NULL;
-}
-
 #endif

@@ -1,13 +1,9 @@
 /* All meshes of the test data are read and repaired into valid meshes. */
+#include "tests/test_data.h"
 #include "unit/mesh_io/common.h"
 
 #include <dirent.h>
 #include <stdio.h>
-
-static const char *folder(void) {
-    const char *data = getenv("QC_TEST_DATA");
-    return data ? data : "../shared";
-}
 
 static void check(qc_ctx *ctx, const char *path) {
     qc_polygon_mesh *soup = NULL;
@@ -32,10 +28,9 @@ static void check(qc_ctx *ctx, const char *path) {
 }
 
 static void test_all(void **state) {
-    char meshes[1024], path[2048];
+    char meshes[TEST_DATA_PATH], path[2 * TEST_DATA_PATH];
     int n = 0;
-    snprintf(meshes, sizeof meshes, "%s/meshes", folder());
-    DIR *directory = opendir(meshes);
+    DIR *directory = opendir(test_data("meshes", meshes));
     assert_non_null(directory);
     for (struct dirent *entry; (entry = readdir(directory));) {
         if (!strstr(entry->d_name, ".obj") && !strstr(entry->d_name, ".off")) continue;
@@ -48,11 +43,8 @@ static void test_all(void **state) {
 }
 
 int main(void) {
-    char meshes[1024];
-    snprintf(meshes, sizeof meshes, "%s/meshes", folder());
-    DIR *directory = opendir(meshes);
-    if (!directory) return 77;
-    closedir(directory);
+    const int skip = test_data_missing();
+    if (skip) return skip;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_all)};
     return cmocka_run_group_tests(tests, setup, teardown);
 }
