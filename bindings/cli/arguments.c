@@ -64,7 +64,7 @@ static int set_choice(const cli_option *o, const char *text) {
             *(int *)o->target = (int)n;
             return -1;
         }
-    const char *near = cli_closest(text, o->choices, n);
+    const char *near = qc_closest_name(text, o->choices, n);
     return cli_error(EXIT_USAGE, "--%s: no choice '%s'%s%s; use %s", o->name, text,
                      near ? "; closest: " : "", near ? near : "", o->argument);
 }
@@ -117,7 +117,7 @@ static int bad_option(poptContext context, const cli_option *options, int code) 
     char bare[64];
     snprintf(bare, sizeof bare, "%.*s", (int)strcspn(name + strspn(name, "-"), "="),
              name + strspn(name, "-"));
-    const char *near = cli_closest(bare, names, n);
+    const char *near = qc_closest_name(bare, names, n);
     return cli_error(EXIT_USAGE, "no option '%s'%s%s; --help lists all", name,
                      near ? "; closest: --" : "", near ? near : "");
 }

@@ -57,9 +57,6 @@ int cli_parse(int argc, const char **argv, const cli_option *options, int min_n,
               const char *synopsis, const char *about, cli_arguments *out);
 void cli_arguments_free(cli_arguments *arguments);
 
-/* Closest of n names by edit distance; NULL when none is near. */
-const char *cli_closest(const char *name, const char *const *names, size_t n);
-
 /* --- sessions: context, progress, interruption --------------------------------------------- */
 
 enum { CLI_PROGRESS_AUTO = 0, CLI_PROGRESS_PLAIN, CLI_PROGRESS_NONE };

@@ -38,7 +38,7 @@ static void help(void) {
 static int unknown_command(const char *name) {
     const char *names[N_COMMANDS];
     for (size_t i = 0; i < N_COMMANDS; i++) names[i] = commands[i].name;
-    const char *near = cli_closest(name, names, N_COMMANDS);
+    const char *near = qc_closest_name(name, names, N_COMMANDS);
     return cli_error(EXIT_USAGE, "no command '%s'%s%s; see quadcover --help", name,
                      near ? "; closest: " : "", near ? near : "");
 }

@@ -73,9 +73,6 @@ void qc__parallel_for(qc_ctx *ctx, int64_t n, int64_t chunk, qc__body *body, voi
 
 /* --- text and files --------------------------------------------------------------------------- */
 
-/* The entry of names[0..n) closest to `name` by edit distance, or NULL when none is near. */
-const char *qc__closest_name(const char *name, const char *const *names, size_t n);
-
 /* Writing so that no partial file is ever left: a temporary beside the target, renamed on success.
  * "-" writes to stdout. commit returns IO when anything failed and removes the temporary. */
 typedef struct qc__writer {

@@ -25,12 +25,13 @@ static size_t edit_distance(const char *a, const char *b) {
     return row[m];
 }
 
-const char *qc__closest_name(const char *name, const char *const *names, size_t n) {
+const char *qc_closest_name(const char *name, const char *const *names, size_t n) {
     const char *best = NULL;
     size_t best_distance = 2 + strlen(name) / 2;
     for (size_t i = 0; i < n; i++) {
         /* A missing prefix ("hodge" for "qc.hodge") is nearer than its length. */
         const char *tail = strrchr(names[i], '.');
+        if (!*names[i]) continue;
         size_t d = edit_distance(name, names[i]);
         const size_t e = tail ? edit_distance(name, tail + 1) : SIZE_MAX;
         if (e < d) d = e;

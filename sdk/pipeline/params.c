@@ -115,7 +115,7 @@ static qc_status set_enum(qc_ctx *ctx, const qc_param *p, const char *step, void
         const int more = snprintf(list + used, sizeof list - used, " %s", p->choices[n]);
         used = used + (size_t)more < sizeof list ? used + (size_t)more : sizeof list - 1;
     }
-    const char *closest = qc__closest_name(text, p->choices, n);
+    const char *closest = qc_closest_name(text, p->choices, n);
     if (closest) snprintf(list + used, sizeof list - used, " (closest: '%s')", closest);
     return refuse_text(ctx, p, step, text, list);
 }

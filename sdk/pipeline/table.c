@@ -41,7 +41,7 @@ qc__hint qc__closest_hint(qc_ctx *ctx, const char *wanted, const void *names, in
     const char **list = QC__NEW(ctx, const char *, n);
     for (int64_t i = 0; list && i < n; i++)
         memcpy(&list[i], (const char *)names + (size_t)i * stride, sizeof *list);
-    const char *closest = list ? qc__closest_name(wanted, list, (size_t)n) : NULL;
+    const char *closest = list ? qc_closest_name(wanted, list, (size_t)n) : NULL;
     if (closest) snprintf(hint.text, sizeof hint.text, " (closest: '%s')", closest);
     qc__free(list);
     return hint;

@@ -46,7 +46,7 @@ static qc_status find(qc_ctx *ctx, const char *name, int *shape) {
             return QC_OK;
         }
     }
-    const char *closest = qc__closest_name(name, names, SHAPES);
+    const char *closest = qc_closest_name(name, names, SHAPES);
     if (closest)
         return qc__fail(ctx, QC_ERR_NOT_FOUND, -1, "no shape \"%s\"; did you mean \"%s\"?", name,
                         closest);

@@ -54,6 +54,10 @@ QC_API const char *qc_status_name(qc_status status);
 /* "0.1.0": the version of the loaded library (QC_VERSION_STRING is that of the header). */
 QC_API const char *qc_version(void);
 
+/* The entry of names[0..n) nearest to `name` by edit distance, also without its prefix up to the
+ * last dot; NULL when none is near. For messages about unknown names. Thread: any. */
+QC_API const char *qc_closest_name(const char *name, const char *const *names, size_t n);
+
 /* --- context ---------------------------------------------------------------------------------- */
 
 typedef struct qc_ctx qc_ctx;

@@ -12,7 +12,7 @@ static void the_closest_name_is_found(void **state) {
                                            {"alinment", "alignment"}, {"zzzzzz", NULL},
                                            {"qc.hogde", "qc.hodge"}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
-        const char *found = qc__closest_name(table[i][0], names, 5);
+        const char *found = qc_closest_name(table[i][0], names, 5);
         if (table[i][1]) {
             assert_non_null(found);
             assert_string_equal(found, table[i][1]);
@@ -20,11 +20,11 @@ static void the_closest_name_is_found(void **state) {
             assert_null(found);
         }
     }
-    assert_null(qc__closest_name("anything", names, 0));
+    assert_null(qc_closest_name("anything", names, 0));
     char longer[200];
     memset(longer, 'x', sizeof longer);
     longer[199] = '\0';
-    assert_null(qc__closest_name(longer, names, 5));
+    assert_null(qc_closest_name(longer, names, 5));
 }
 
 static void check_round_trip(double value) {
