@@ -285,11 +285,9 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
     qc_corner_map *map = NULL;
     qc_status status = rotation ? QC_OK : QC_ERR_NOMEM;
     for (int32_t e = 0; e < r->mesh->n_edges && status == QC_OK; e++) {
-        const int32_t h = r->mesh->edge_halfedge[2 * (int64_t)e], g = r->mesh->twin[h];
-        if (g >= 0) /* f'_t = i^{c_t - m - c_s} f'_s + tau */
-            rotation[e] = (int8_t)((seamless->face_turn[g / 3] - qc_cover_turn(&cover, h) -
-                                    seamless->face_turn[h / 3]) &
-                                   3);
+        const int32_t h = r->mesh->edge_halfedge[2 * (int64_t)e];
+        if (r->mesh->twin[h] >= 0)
+            rotation[e] = (int8_t)qc__combed_rotation(&cover, seamless->face_turn, h);
     }
     if (status == QC_OK)
         status = qc_corner_map_create(r->ctx, r->mesh, &r->best[0].re,

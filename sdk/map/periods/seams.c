@@ -24,12 +24,6 @@ typedef struct builder {
     qc__seams *s;
 } builder;
 
-/* Rotation of the combed map when halfedge h is crossed: f'_t = i^{c_t - m - c_s} f'_s + tau. */
-static int32_t crossing_turn(const builder *b, int32_t h) {
-    const int32_t g = b->cover->mesh->twin[h];
-    return (b->face_turn[g / 3] - qc_cover_turn(b->cover, h) - b->face_turn[h / 3]) & 3;
-}
-
 static bool is_cut(const builder *b, int32_t h) {
     return b->cut[b->cover->mesh->halfedge_edge[h]] && b->cover->mesh->twin[h] >= 0;
 }
@@ -89,7 +83,7 @@ static void trace_segment(builder *b, int32_t h, int32_t k) {
     qc__seams *s = b->s;
     const int32_t first = h;
     s->segment_node[2 * k] = qc_halfedge_start(mesh, h);
-    s->segment_turn[k] = (int8_t)crossing_turn(b, h);
+    s->segment_turn[k] = (int8_t)qc__combed_rotation(b->cover, b->face_turn, h);
     for (;;) {
         s->edge_segment[mesh->halfedge_edge[h]] = k;
         s->edge_left[mesh->halfedge_edge[h]] = h;

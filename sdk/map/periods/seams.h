@@ -76,6 +76,12 @@ static inline double _Complex qc__turn(double _Complex z, int32_t k) {
 static inline double _Complex qc__seams_shift(const qc__seams *s, int32_t symbol) {
     return symbol >= s->n_segments ? 1.0 : 1.0 - qc__turn(1.0, s->segment_turn[symbol]);
 }
+/* Rotation of the combed map when halfedge h is crossed: f'_t = i^{c_t - m - c_s} f'_s + tau. */
+static inline int32_t qc__combed_rotation(const qc_cover *cover, const int8_t *face_turn,
+                                          int32_t h) {
+    const int32_t g = cover->mesh->twin[h];
+    return (face_turn[g / 3] - qc_cover_turn(cover, h) - face_turn[h / 3]) & 3;
+}
 int32_t qc__seams_component(const qc__seams *s, int32_t symbol);
 
 /* Segments, cones and wedges of a cut, combed cover. index4: n_vertices. */

@@ -66,6 +66,20 @@ static void jacobian(const qc_complex *hat, const qc_complex f[3], qc_complex *d
     }
 }
 
+static double det(qc_complex du, qc_complex dv) {
+    return du.re * dv.im - du.im * dv.re;
+}
+
+double qc__face_det(const qc__reduced_map *map, const qc_complex *hat, int32_t t) {
+    qc_complex f[3], du, dv;
+    for (int32_t k = 0; k < 3; k++) {
+        const int64_t c = 3 * (int64_t)t + k;
+        f[k] = qc__reduced_map_corner(map, map->value[map->mesh->face_vertex[c]], c);
+    }
+    jacobian(hat + 3 * (int64_t)t, f, &du, &dv);
+    return det(du, dv);
+}
+
 double qc__patch_energy(const qc__patch *p, const double *x, double *gradient) {
     memset(gradient, 0, sizeof *gradient * 2 * (size_t)p->n_vertices);
     double energy = 0;
@@ -75,7 +89,7 @@ double qc__patch_energy(const qc__patch *p, const double *x, double *gradient) {
         qc_complex f[3], du, dv;
         corners(p, x, t, f);
         jacobian(hat, f, &du, &dv);
-        const double d = du.re * dv.im - du.im * dv.re, root = sqrt(p->eps * p->eps + d * d);
+        const double d = det(du, dv), root = sqrt(p->eps * p->eps + d * d);
         /* chi = (d + root) / 2 without cancellation for d < 0 */
         const double chi = d >= 0 ? 0.5 * (d + root) : 0.5 * p->eps * p->eps / (root - d);
         const double trace = du.re * du.re + du.im * du.im + dv.re * dv.re + dv.im * dv.im;
@@ -108,7 +122,7 @@ double qc__patch_min_det(const qc__patch *p, const double *x) {
         qc_complex f[3], du, dv;
         corners(p, x, t, f);
         jacobian(p->hat + 3 * (int64_t)t, f, &du, &dv);
-        const double d = du.re * dv.im - du.im * dv.re;
+        const double d = det(du, dv);
         if (d < least) least = d;
     }
     return least;

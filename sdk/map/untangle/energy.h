@@ -25,6 +25,8 @@ typedef struct qc__patch {
 /* Target shapes: hat (3 n_faces), area (n_faces). */
 qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
                                qc_complex *hat, double *area);
+/* det J of face t for the values of the map. */
+double qc__face_det(const qc__reduced_map *map, const qc_complex *hat, int32_t t);
 /* Energy and gradient at x (2 n_vertices). */
 double qc__patch_energy(const qc__patch *patch, const double *x, double *gradient);
 /* Lowers the energy from x until the patch is clean, or no better; x in place. */

@@ -47,21 +47,6 @@ typedef struct untangler {
 
 /* --- neighbourhoods --------------------------------------------------------------------------- */
 
-static double face_det(const untangler *u, int32_t t) {
-    qc_complex f[3];
-    const qc_complex *hat = u->hat + 3 * (int64_t)t;
-    double du[2] = {0, 0}, dv[2] = {0, 0};
-    for (int32_t k = 0; k < 3; k++) {
-        const int64_t c = 3 * (int64_t)t + k;
-        f[k] = qc__reduced_map_corner(u->map, u->map->value[u->mesh->face_vertex[c]], c);
-        du[0] += f[k].re * hat[k].re;
-        du[1] += f[k].re * hat[k].im;
-        dv[0] += f[k].im * hat[k].re;
-        dv[1] += f[k].im * hat[k].im;
-    }
-    return du[0] * dv[1] - du[1] * dv[0];
-}
-
 static bool winds_wrong(const untangler *u, int32_t v) {
     return u->guide.cross && u->map->pinned[v] &&
            qc__guide_turns(&u->guide, v) != qc__map_turns(&u->guide, v);
@@ -85,7 +70,7 @@ static int32_t mark_neighbourhood(untangler *u, int32_t rings) {
         mark(u, v, &n);
     }
     for (int32_t t = 0; t < mesh->n_faces; t++) {
-        if (face_det(u, t) > good_det) continue;
+        if (qc__face_det(u->map, u->hat, t) > good_det) continue;
         bad++;
         for (int32_t k = 0; k < 3; k++) mark(u, mesh->face_vertex[3 * (int64_t)t + k], &n);
     }
@@ -163,7 +148,7 @@ static int32_t count_bad(const untangler *u) {
     int32_t bad = 0;
     for (int32_t i = 0; i < u->n_patch_faces; i++) {
         const int32_t t = u->face[i];
-        bad += face_det(u, t) <= 0;
+        bad += qc__face_det(u->map, u->hat, t) <= 0;
         for (int32_t k = 0; k < 3; k++) {
             const int32_t v = u->mesh->face_vertex[3 * (int64_t)t + k];
             bad += u->map->pinned[v] && winds_wrong(u, v);
