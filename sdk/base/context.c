@@ -29,6 +29,9 @@ qc_status qc_ctx_create(const qc_ctx_options *options, qc_ctx **out) {
         memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
     }
     if (!o.resize) o.resize = default_resize;
+    qc__isa isa;
+    const qc_status status = qc__isa_select(o.instructions, &isa);
+    if (status != QC_OK) return status;
     qc_ctx *ctx = o.resize(o.user, NULL, 0, sizeof *ctx);
     if (!ctx) return QC_ERR_NOMEM;
     memset(ctx, 0, sizeof *ctx);
@@ -36,6 +39,7 @@ qc_status qc_ctx_create(const qc_ctx_options *options, qc_ctx **out) {
     ctx->log = o.log;
     ctx->progress = o.progress;
     ctx->user = o.user;
+    ctx->isa = isa;
     ctx->threads = o.threads == 0 ? online_cores() : o.threads > 256 ? 256 : o.threads;
     ctx->range = (qc__range){0.0, 1.0, ""};
     atomic_init(&ctx->cancelled, false);
@@ -55,6 +59,12 @@ const qc_error *qc_ctx_error(const qc_ctx *ctx) {
 }
 uint32_t qc_ctx_threads(const qc_ctx *ctx) {
     return ctx->threads;
+}
+qc__isa qc__ctx_isa(const qc_ctx *ctx) {
+    return ctx->isa;
+}
+const char *qc_ctx_instructions(const qc_ctx *ctx) {
+    return qc__isa_name(ctx->isa);
 }
 const char *qc_version(void) {
     return QC_VERSION_STRING;

@@ -13,6 +13,7 @@ struct qc_ctx {
     bool (*progress)(void *user, const char *stage, double fraction);
     void *user;
     uint32_t threads;
+    qc__isa isa;
     qc__pool *pool; /* made by the first parallel_for which needs it */
 
     qc__range range;

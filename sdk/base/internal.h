@@ -71,6 +71,15 @@ void qc__range_end(qc_ctx *ctx, qc__range outer);
 typedef void qc__body(void *arg, int64_t begin, int64_t end, uint32_t worker);
 void qc__parallel_for(qc_ctx *ctx, int64_t n, int64_t chunk, qc__body *body, void *arg);
 
+/* --- vector instructions ---------------------------------------------------------------------- */
+
+/* Order matters: a processor with one set has those before it. */
+typedef enum qc__isa { QC__PORTABLE, QC__AVX2, QC__AVX512, QC__ISAS } qc__isa;
+qc__isa qc__ctx_isa(const qc_ctx *ctx);
+/* The set with this name (NULL = the best one) if the processor has it. */
+qc_status qc__isa_select(const char *name, qc__isa *out);
+const char *qc__isa_name(qc__isa isa);
+
 /* --- text and files --------------------------------------------------------------------------- */
 
 /* Writing so that no partial file is ever left: a temporary beside the target, renamed on success.

@@ -10,6 +10,7 @@
 #include <qc/sparse.h>
 #include <stdatomic.h>
 #include "sdk/base/internal.h"
+#include "sdk/sparse/kernels/kernels.h"
 
 /* Compressed columns without values. */
 typedef struct qc__pattern {
@@ -70,6 +71,7 @@ struct qc_symbolic {
 struct qc_factor {
     qc_symbolic *S;
     int32_t components; /* 1 real, 2 complex */
+    const qc__kernels *kernels;
     bool usable;
     double *values; /* panels: unit lower triangle, the strict upper part is undefined */
     double *D; /* n pivots, permuted                                                           */

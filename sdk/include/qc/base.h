@@ -77,9 +77,12 @@ typedef struct qc_ctx_options {
      */
     bool (*progress)(void *user, const char *stage, double fraction);
     void *user;
+    /* Vector instructions of the numerical kernels: "avx512", "avx2" or "portable"; NULL = the best
+     * the processor has. Results are bit for bit repeatable for each; they round differently. */
+    const char *instructions;
 } qc_ctx_options;
 #define QC_CTX_OPTIONS_INIT                                                                        \
-    { sizeof(qc_ctx_options), 0, NULL, NULL, NULL, NULL }
+    { sizeof(qc_ctx_options), 0, NULL, NULL, NULL, NULL, NULL }
 
 typedef struct qc_error {
     qc_status status;
@@ -87,7 +90,8 @@ typedef struct qc_error {
     const char *stage, *text; /* never NULL; text is one line */
 } qc_error;
 
-/* options NULL = defaults. The caller owns *out. Errors: ARGUMENT, NOMEM. Thread: any. */
+/* options NULL = defaults. The caller owns *out. Errors: ARGUMENT (also: unknown instructions), NOMEM,
+ * UNSUPPORTED (instructions which the processor lacks). Thread: any. */
 QC_API qc_status qc_ctx_create(const qc_ctx_options *options, qc_ctx **out);
 /* NULL is fine; cannot fail. Objects made through the context may outlive it as long as the
  * allocator's user data does. */
@@ -96,6 +100,8 @@ QC_API void qc_ctx_free(qc_ctx *ctx);
 QC_API const qc_error *qc_ctx_error(const qc_ctx *ctx);
 /* Number of threads the context may use (>= 1). */
 QC_API uint32_t qc_ctx_threads(const qc_ctx *ctx);
+/* Name of the vector instructions in use: "avx512", "avx2" or "portable". Static text. */
+QC_API const char *qc_ctx_instructions(const qc_ctx *ctx);
 
 /* --- objects ---------------------------------------------------------------------------------- */
 

@@ -106,6 +106,25 @@ static void option_structs_of_any_size_are_read(void **state) {
     qc_ctx_free(NULL);
 }
 
+static void instructions_are_chosen_and_reported(void **state) {
+    (void)state;
+    qc_ctx_options o = QC_CTX_OPTIONS_INIT;
+    qc_ctx *ctx;
+    assert_int_equal(qc_ctx_create(&o, &ctx), QC_OK);
+    const char *best = qc_ctx_instructions(ctx);
+    qc_ctx_free(ctx);
+    o.instructions = best;
+    assert_int_equal(qc_ctx_create(&o, &ctx), QC_OK);
+    assert_string_equal(qc_ctx_instructions(ctx), best);
+    qc_ctx_free(ctx);
+    o.instructions = "portable"; /* every processor has it */
+    assert_int_equal(qc_ctx_create(&o, &ctx), QC_OK);
+    assert_string_equal(qc_ctx_instructions(ctx), "portable");
+    qc_ctx_free(ctx);
+    o.instructions = "avx1024";
+    assert_int_equal(qc_ctx_create(&o, &ctx), QC_ERR_ARGUMENT);
+}
+
 static void every_status_has_a_name(void **state) {
     (void)state;
     assert_string_equal(qc_status_name(QC_OK), "ok");
@@ -124,6 +143,7 @@ int main(void) {
         cmocka_unit_test(false_cancels),
         cmocka_unit_test(errors_are_one_line),
         cmocka_unit_test(option_structs_of_any_size_are_read),
+        cmocka_unit_test(instructions_are_chosen_and_reported),
         cmocka_unit_test(every_status_has_a_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -178,13 +178,22 @@ static inline double max_abs(int64_t count, const cplx *a) {
     return max;
 }
 
-static inline qc_ctx *new_ctx(uint32_t threads) {
+/* NULL when the processor lacks the instructions. */
+static inline qc_ctx *new_ctx_with(uint32_t threads, const char *instructions) {
     qc_ctx_options options = QC_CTX_OPTIONS_INIT;
     qc_ctx *ctx = NULL;
     options.threads = threads;
-    assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
+    options.instructions = instructions;
+    const qc_status status = qc_ctx_create(&options, &ctx);
+    if (status == QC_ERR_UNSUPPORTED) return NULL;
+    assert_int_equal(status, QC_OK);
     return ctx;
 }
+static inline qc_ctx *new_ctx(uint32_t threads) {
+    return new_ctx_with(threads, NULL);
+}
+
+static const char *const instruction_sets[] = {"portable", "avx2", "avx512"};
 
 static inline qc_factor *factor_of(qc_ctx *ctx, const test_matrix *M,
                                    const qc_analyze_options *options) {

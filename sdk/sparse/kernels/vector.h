@@ -1,0 +1,152 @@
+/* Vectors of doubles for the kernels of this folder, which are compiled once per instruction set:
+ * QC__ISA_AVX512 (8 lanes), QC__ISA_AVX2 (4 lanes), or neither (2 lanes, plain C). A complex number
+ * takes two lanes: real, imaginary. */
+#ifndef QC_SPARSE_VECTOR_H
+#define QC_SPARSE_VECTOR_H
+
+#include <stdint.h>
+
+#if defined(QC__ISA_AVX512)
+#include <immintrin.h>
+enum { LANES = 8 };
+typedef __m512d vec;
+static inline vec v_zero(void) {
+    return _mm512_setzero_pd();
+}
+static inline vec v_set(double x) {
+    return _mm512_set1_pd(x);
+}
+static inline vec v_load(const double *p) {
+    return _mm512_loadu_pd(p);
+}
+static inline void v_store(double *p, vec x) {
+    _mm512_storeu_pd(p, x);
+}
+static inline __mmask8 v_mask(int64_t n) {
+    return (__mmask8)((1u << n) - 1);
+}
+static inline vec v_load_part(const double *p, int64_t n) {
+    return _mm512_maskz_loadu_pd(v_mask(n), p);
+}
+static inline void v_store_part(double *p, vec x, int64_t n) {
+    _mm512_mask_storeu_pd(p, v_mask(n), x);
+}
+static inline vec v_add(vec a, vec b) {
+    return _mm512_add_pd(a, b);
+}
+static inline vec v_mul(vec a, vec b) {
+    return _mm512_mul_pd(a, b);
+}
+static inline vec v_fma(vec a, vec b, vec c) {
+    return _mm512_fmadd_pd(a, b, c);
+}
+static inline vec v_fnma(vec a, vec b, vec c) {
+    return _mm512_fnmadd_pd(a, b, c);
+}
+static inline vec v_swap(vec x) {
+    return _mm512_permute_pd(x, 0x55);
+}
+static inline vec v_alternate(double x) {
+    return _mm512_set_pd(x, -x, x, -x, x, -x, x, -x);
+}
+static inline double v_sum(vec x) {
+    return _mm512_reduce_add_pd(x);
+}
+
+#elif defined(QC__ISA_AVX2)
+#include <immintrin.h>
+enum { LANES = 4 };
+typedef __m256d vec;
+static inline vec v_zero(void) {
+    return _mm256_setzero_pd();
+}
+static inline vec v_set(double x) {
+    return _mm256_set1_pd(x);
+}
+static inline vec v_load(const double *p) {
+    return _mm256_loadu_pd(p);
+}
+static inline void v_store(double *p, vec x) {
+    _mm256_storeu_pd(p, x);
+}
+static inline __m256i v_mask(int64_t n) {
+    return _mm256_cmpgt_epi64(_mm256_set1_epi64x(n), _mm256_set_epi64x(3, 2, 1, 0));
+}
+static inline vec v_load_part(const double *p, int64_t n) {
+    return _mm256_maskload_pd(p, v_mask(n));
+}
+static inline void v_store_part(double *p, vec x, int64_t n) {
+    _mm256_maskstore_pd(p, v_mask(n), x);
+}
+static inline vec v_add(vec a, vec b) {
+    return _mm256_add_pd(a, b);
+}
+static inline vec v_mul(vec a, vec b) {
+    return _mm256_mul_pd(a, b);
+}
+static inline vec v_fma(vec a, vec b, vec c) {
+    return _mm256_fmadd_pd(a, b, c);
+}
+static inline vec v_fnma(vec a, vec b, vec c) {
+    return _mm256_fnmadd_pd(a, b, c);
+}
+static inline vec v_swap(vec x) {
+    return _mm256_permute_pd(x, 0x5);
+}
+static inline vec v_alternate(double x) {
+    return _mm256_set_pd(x, -x, x, -x);
+}
+static inline double v_sum(vec x) {
+    const __m128d half = _mm_add_pd(_mm256_castpd256_pd128(x), _mm256_extractf128_pd(x, 1));
+    return _mm_cvtsd_f64(_mm_add_sd(half, _mm_unpackhi_pd(half, half)));
+}
+
+#else
+enum { LANES = 2 };
+typedef struct vec {
+    double a, b;
+} vec;
+static inline vec v_zero(void) {
+    return (vec){0, 0};
+}
+static inline vec v_set(double x) {
+    return (vec){x, x};
+}
+static inline vec v_load(const double *p) {
+    return (vec){p[0], p[1]};
+}
+static inline void v_store(double *p, vec x) {
+    p[0] = x.a;
+    p[1] = x.b;
+}
+static inline vec v_load_part(const double *p, int64_t n) {
+    return (vec){n > 0 ? p[0] : 0, n > 1 ? p[1] : 0};
+}
+static inline void v_store_part(double *p, vec x, int64_t n) {
+    if (n > 0) p[0] = x.a;
+    if (n > 1) p[1] = x.b;
+}
+static inline vec v_add(vec x, vec y) {
+    return (vec){x.a + y.a, x.b + y.b};
+}
+static inline vec v_mul(vec x, vec y) {
+    return (vec){x.a * y.a, x.b * y.b};
+}
+static inline vec v_fma(vec x, vec y, vec z) {
+    return (vec){x.a * y.a + z.a, x.b * y.b + z.b};
+}
+static inline vec v_fnma(vec x, vec y, vec z) {
+    return (vec){z.a - x.a * y.a, z.b - x.b * y.b};
+}
+static inline vec v_swap(vec x) {
+    return (vec){x.b, x.a};
+}
+static inline vec v_alternate(double x) {
+    return (vec){-x, x};
+}
+static inline double v_sum(vec x) {
+    return x.a + x.b;
+}
+#endif
+
+#endif
