@@ -1,0 +1,190 @@
+/* The benchmark of qc/sparse.h against its peers: what its files share.
+ *
+ * A `peer` is one library behind a struct of functions, ours included; a `runner` is a peer with an
+ * ordering and a number of threads, at work on one matrix. Failures end the program: bench_die. */
+#ifndef QC_BENCH_SPARSE_H
+#define QC_BENCH_SPARSE_H
+
+#include <qc/cover.h>
+#include <qc/field.h>
+#include <qc/sparse.h>
+
+/* --- surface.c, matrix.c: the matrices -------------------------------------------------------- */
+
+/* Change of the matrix by one matching flip: D(k,l) += dl, D(k,m) += dm and the conjugates, which
+ * is w[0] w[0]^H - w[1] w[1]^H on the rows (k, l, m). */
+typedef struct bench_flip {
+    int32_t row[3];
+    qc_complex dl, dm;
+    qc_complex w[2][3];
+} bench_flip;
+
+typedef struct bench_matrix {
+    char name[64];
+    int32_t faces;
+    qc_hermitian A; /* borrowed from stiffness */
+    qc_stiffness *stiffness;
+    int32_t (*path)[3]; /* n x 3: rows of the flip of each edge, row[0] = -1 when it has none */
+    int32_t n_flips;
+    bench_flip *flips;
+} bench_matrix;
+
+/* A smoothed cross field on the mesh of the file, then `levels` midpoint subdivisions with the
+ * cross of each face handed to its four parts, which lie in its plane. A NULL path makes a small
+ * mesh. cache (may be NULL): folder where fields are kept between runs. */
+qc_matching *bench_surface(qc_ctx *ctx, const char *path, int32_t levels, const char *cache);
+/* The non-conforming stiffness of qc.hodge and `flips` random flips. */
+bench_matrix *bench_make_matrix(qc_ctx *ctx, const char *name, const qc_matching *matching,
+                                int32_t flips);
+void bench_matrix_free(bench_matrix *M);
+/* b - (A + D) x, relative to |A| |x| + |b| (largest entries); f NULL = no D. */
+double bench_residual(const bench_matrix *M, const bench_flip *f, const qc_complex *b,
+                      const qc_complex *x);
+void bench_random_vector(int64_t n, qc_complex *x);
+
+/* --- quality.c: what an ordering costs, without any clock ------------------------------------- */
+
+typedef struct bench_quality {
+    double nnz, flops; /* of L; real operations of the complex factorisation                      */
+    double touched;    /* entries of L on the path of a flip, mean over all edges */
+} bench_quality;
+bench_quality bench_order_quality(qc_ctx *ctx, const bench_matrix *M, const int32_t *perm);
+
+/* --- peers ------------------------------------------------------------------------------------ */
+
+enum { ORDER_GIVEN, ORDER_AMD, ORDER_DISSECTION };
+
+/* Calls of one peer on its own state; NULL where it has no such operation. */
+typedef struct bench_peer {
+    const char *name;
+    void *(*create)(const bench_matrix *M, int ordering, const int32_t *perm, uint32_t threads);
+    void (*analyze)(void *self);
+    void (*factor)(void *self); /* a new factor */
+    void (*refactor)(void *self);
+    void (*forward)(void *self, qc_complex *x); /* |x|^2 becomes b^H A^{-1} b */
+    void (*solve)(void *self, int32_t nrhs, qc_complex *x);
+    void (*flip)(void *self, const bench_flip *f, int direction); /* +1 applies, -1 undoes */
+    double (*stored)(void *self); /* entries of the factor, with explicit zeros */
+    void (*drop)(void *self);     /* the factor, not the analysis */
+    void (*destroy)(void *self);
+} bench_peer;
+extern const bench_peer peer_quadcover, peer_cholmod, peer_cxsparse;
+#ifdef BENCH_MUMPS
+extern const bench_peer peer_mumps;
+#endif
+
+/* Orderings alone: perm of n. */
+void order_quadcover(const bench_matrix *M, int ordering, int32_t *perm);
+void order_metis(const bench_matrix *M, int32_t *perm);
+
+/* --- measure.c: clocks and interleaving ------------------------------------------------------- */
+
+enum { OP_ANALYZE, OP_FACTOR, OP_REFACTOR, OP_FORWARD, OP_SOLVE, OP_SOLVE16, OP_FLIP, OP_COUNT };
+
+/* Seconds; cpu is that of the calling thread. */
+typedef struct bench_duration {
+    double wall, cpu;
+} bench_duration;
+typedef struct bench_samples {
+    int32_t n, capacity;
+    bench_duration *value;
+} bench_samples;
+bench_duration bench_clock(void);
+void bench_sample(bench_samples *s, bench_duration begin, bench_duration end);
+bench_duration bench_median(const bench_samples *s);
+
+typedef struct bench_runner {
+    const char *label;
+    const bench_peer *peer;
+    int ordering;
+    const int32_t *perm;
+    uint32_t threads;
+    void *self;
+    bench_samples samples[OP_COUNT];
+    bench_duration time[OP_COUNT]; /* medians, 0 = not measured                                  */
+    double stored, residual;
+    double peak; /* bytes, see memory.c */
+} bench_runner;
+
+typedef struct bench_plan {
+    bool op[OP_COUNT];
+    int32_t repeat;
+    double seconds; /* a runner which has used up these gets no further turn */
+    bool keep;      /* all factors stay in memory between the rounds         */
+} bench_plan;
+/* Every round visits all runners in turn, so that a disturbance hits all of them alike. Checks
+ * every solution. */
+void bench_measure(const bench_matrix *M, int32_t n, bench_runner *runners, const bench_plan *plan);
+void bench_runner_clear(bench_runner *r);
+/* Peak of the resident memory during analysis and factorisation, in a child of its own. */
+double bench_peak_memory(const bench_matrix *M, const bench_runner *r);
+
+/* --- limits.c --------------------------------------------------------------------------------- */
+
+typedef struct bench_limits {
+    double fma, fma_avx2; /* flop/s of one core, widest instructions / AVX2; 0 = not there */
+    double zgemm[3];      /* n = 8, 32, 128 */
+    double l2, memory,
+        memory2; /* bytes/s read and written in place: L2, memory by one, two cores */
+} bench_limits;
+extern const int32_t bench_zgemm_size[3];
+bench_limits bench_measure_limits(void);
+
+/* --- report.c, report_json.c ------------------------------------------------------------------ */
+
+enum { MOST_COLUMNS = 6, MOST_ROWS = 24 };
+
+/* One comparison. Printed as peer / ours: above 1 ours is better. */
+typedef struct bench_row {
+    const char *name, *unit;
+    double ours, peer[MOST_COLUMNS]; /* 0 = not measured                */
+    double reach[MOST_COLUMNS];      /* what peer / ours is to be, 0 = no such figure */
+    double rate, percent;            /* of work or traffic, and that of the limit; 0 = none */
+    const char *rate_unit;
+} bench_row;
+typedef struct bench_table {
+    const char *title;
+    int columns, rows;
+    const char *column[MOST_COLUMNS];
+    bench_row row[MOST_ROWS];
+} bench_table;
+bench_row *bench_add_row(bench_table *t, const char *name, const char *unit, double ours);
+
+enum { TABLE_ORDER, TABLE_SAME, TABLE_OWN, TABLES };
+typedef struct bench_comparison {
+    char name[64];
+    int32_t faces, n;
+    double nnz, residual; /* of A, upper triangle; largest of all libraries */
+    bench_table table[TABLES];
+} bench_comparison;
+
+enum { FORMAT_TEXT, FORMAT_MARKDOWN };
+void bench_print_limits(const bench_limits *l, int format);
+void bench_print_comparison(const bench_comparison *c, int format);
+void bench_write_json(const char *path, const bench_limits *l, int32_t n,
+                      const bench_comparison *c);
+
+/* --- compare.c -------------------------------------------------------------------------------- */
+
+enum { PART_ORDER = 1, PART_FACTOR = 2, PART_SOLVE = 4, PART_UPDATE = 8, PART_MEMORY = 16 };
+typedef struct bench_effort {
+    unsigned parts; /* PART_... */
+    int32_t repeat;
+    double seconds; /* per library and ordering */
+    bool same, own; /* which tables             */
+} bench_effort;
+void bench_compare(qc_ctx *ctx, const bench_matrix *M, const bench_limits *l,
+                   const bench_effort *effort, bench_comparison *out);
+
+/* --- main.c ----------------------------------------------------------------------------------- */
+
+#if defined(__GNUC__)
+__attribute__((noreturn, format(printf, 1, 2)))
+#endif
+void bench_die(const char *format, ...);
+/* Ends the program with the context's message. */
+void bench_check(qc_ctx *ctx, qc_status status);
+void *bench_alloc(size_t count, size_t size);
+#define NEW(T, count) ((T *)bench_alloc((size_t)(count), sizeof(T)))
+
+#endif
