@@ -1,5 +1,6 @@
-/* The built-in stages as an array; sdk/pipeline reads it through this one symbol. */
+/* The built-in stages and interfaces as arrays; sdk/pipeline reads them through these symbols. */
 #include "sdk/pipeline/builtin.h"
+#include <qc/solver.h>
 #include <qc/stages.h>
 
 #define QC_STAGE(symbol) &symbol,
@@ -7,3 +8,5 @@ const qc_stage *const qc__builtin_stages[] = {
 #include "stages/stage_list.h"
     NULL};
 #undef QC_STAGE
+
+const qc__offer qc__builtin_interfaces[] = {{QC_SOLVER_ID, &qc_solver_builtin.head}, {NULL, NULL}};

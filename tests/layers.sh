@@ -13,6 +13,7 @@ BEGIN {
 # The layer a public header or a folder of sdk/ belongs to.
 function layer(path) {
     sub(/.*\//, "", path); sub(/\.h$/, "", path)
+    if (path == "solver") return "sparse"
     return path == "stage" || path == "stages" || path == "plugin" ? "pipeline" : path
 }
 function offence(why) { print $1 ":" $2 ": " $3 " - " why; bad = 1 }

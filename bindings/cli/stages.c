@@ -20,6 +20,7 @@ static void print_default(const qc_param *p, char *text, size_t size) {
 static void print_range(const qc_param *p, char *text, size_t size) {
     text[0] = '\0';
     if (p->type == QC_INT || p->type == QC_REAL) snprintf(text, size, "%g to %g", p->min, p->max);
+    if (p->type == QC_TEXT && p->choices) snprintf(text, size, "names a %s", p->choices[0]);
     if (p->type != QC_ENUM) return;
     size_t used = 0;
     for (int i = 0; p->choices[i] && used < size; i++)

@@ -31,6 +31,8 @@ static json_t *param_json(const qc_param *p) {
         json_object_set_new(json, "min", json_real(p->min));
         json_object_set_new(json, "max", json_real(p->max));
     }
+    if (p->type == QC_TEXT && p->choices)
+        json_object_set_new(json, "interface", json_string(p->choices[0]));
     if (p->type == QC_ENUM) {
         json_t *choices = json_array();
         for (int i = 0; p->choices[i]; i++)

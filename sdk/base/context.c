@@ -111,6 +111,10 @@ qc_status qc__fail(qc_ctx *ctx, qc_status status, int64_t where, const char *for
     return status;
 }
 
+qc_status qc_ctx_fail(qc_ctx *ctx, qc_status status, int64_t where, const char *text) {
+    return qc__fail(ctx, status == QC_OK ? QC_ERR_FAILED : status, where, "%s", text ? text : "");
+}
+
 qc_status qc__nomem(qc_ctx *ctx) {
     return qc__fail(ctx, QC_ERR_NOMEM, -1, "out of memory");
 }
@@ -134,6 +138,10 @@ bool qc__progress(qc_ctx *ctx, double fraction) {
     if (go_on) return true;
     qc__fail(ctx, QC_ERR_CANCELLED, -1, "cancelled");
     return false;
+}
+
+bool qc_ctx_progress(qc_ctx *ctx, double fraction) {
+    return qc__progress(ctx, fraction);
 }
 
 bool qc__cancelled(const qc_ctx *ctx) {

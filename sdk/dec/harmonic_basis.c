@@ -61,7 +61,7 @@ static qc_status work_create(qc_ctx *ctx, const qc_mesh *m, work *w) {
         return QC_ERR_NOMEM;
     status = qc_stiffness_vertices(ctx, &plain, w->cotangent, NULL, &w->stiffness);
     if (status != QC_OK) return status;
-    return qc__system_create(ctx, w->stiffness, m->n_vertices, "vertex", &w->system);
+    return qc__system_create(ctx, NULL, w->stiffness, m->n_vertices, "vertex", &w->system);
 }
 
 static qc_status basis_form(qc_ctx *ctx, const qc_mesh *m, work *w, int32_t i, qc_complex *z) {

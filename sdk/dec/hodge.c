@@ -11,7 +11,7 @@ static qc_status potential_values(qc_ctx *ctx, const qc_cover *cover, const doub
     qc_status status = qc_stiffness_vertices(ctx, cover, cotangent, NULL, &stiffness);
     if (status != QC_OK) return status;
     qc__system system;
-    status = qc__system_create(ctx, stiffness, cover->mesh->n_vertices, "vertex", &system);
+    status = qc__system_create(ctx, NULL, stiffness, cover->mesh->n_vertices, "vertex", &system);
     if (status == QC_OK) {
         status = qc__system_solve(ctx, &system, F);
         qc__system_free(&system);
@@ -40,7 +40,7 @@ static qc_status decompose(qc_ctx *ctx, const qc_cover *cover, const double *cot
     qc__range_end(ctx, outer);
     if (status != QC_OK) return status;
     outer = qc__range_begin(ctx, NULL, 0.3, 1);
-    status = qc_hodge_remove_curl(ctx, cover, cotangent, z, c, NULL, NULL);
+    status = qc_hodge_remove_curl(ctx, cover, cotangent, NULL, z, c, NULL, NULL);
     qc__range_end(ctx, outer);
     for (int32_t h = 0; status == QC_OK && h < n; h++) c[h] = qc__sub(z[h], c[h]);
     return status;

@@ -58,14 +58,16 @@ void qc__rotate(const qc_mesh *mesh, const double *cotangent, const qc_complex *
  * is rounded. */
 typedef struct qc__system {
     const qc_stiffness *stiffness; /* borrowed */
-    int32_t n_elements; /* length of stiffness->unknown                                 */
-    double *scale;      /* D                                                            */
-    qc_complex *val;    /* of D A D                                                     */
-    qc_factor *factor;  /* NULL when there is no unknown                                */
+    const qc_solver *solver;       /* borrowed */
+    int32_t n_elements;      /* length of stiffness->unknown                                 */
+    double *scale;           /* D                                                            */
+    qc_complex *val;         /* of D A D                                                     */
+    qc_solver_state *factor; /* NULL when there is no unknown                           */
 } qc__system;
-/* `element` names the unknowns ("edge", "vertex") in errors: NOT_POSDEF with where = element. */
-qc_status qc__system_create(qc_ctx *ctx, const qc_stiffness *stiffness, int32_t n_elements,
-                            const char *element, qc__system *out);
+/* solver NULL = builtin. `element` names the unknowns ("edge", "vertex") in errors: NOT_POSDEF with
+ * where = element. */
+qc_status qc__system_create(qc_ctx *ctx, const qc_solver *solver, const qc_stiffness *stiffness,
+                            int32_t n_elements, const char *element, qc__system *out);
 void qc__system_free(qc__system *system);
 /* Overwrites the right-hand side x (n_elements) by the solution, zero where a value is fixed. */
 qc_status qc__system_solve(qc_ctx *ctx, const qc__system *system, qc_complex *x);

@@ -80,13 +80,14 @@ static qc_status remove_passes(qc_ctx *ctx, const qc_cover *cover, const double 
     }
 }
 
-static qc_status run(qc_ctx *ctx, const qc_cover *cover, const double *cotangent, work *w) {
+static qc_status run(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
+                     const qc_solver *solver, work *w) {
     qc_stiffness *stiffness = NULL;
     qc_status status = qc_form_weak_curl_edges(ctx, cover, w->form, w->r);
     if (status == QC_OK) status = qc_stiffness_edges(ctx, cover, cotangent, &stiffness);
     if (status != QC_OK) return status;
     qc__system system;
-    status = qc__system_create(ctx, stiffness, cover->mesh->n_edges, "edge", &system);
+    status = qc__system_create(ctx, solver, stiffness, cover->mesh->n_edges, "edge", &system);
     if (status == QC_OK) {
         status = remove_passes(ctx, cover, cotangent, &system, w);
         qc__system_free(&system);
@@ -96,12 +97,12 @@ static qc_status run(qc_ctx *ctx, const qc_cover *cover, const double *cotangent
 }
 
 qc_status qc_hodge_remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
-                               const qc_complex *z, qc_complex *out, qc_complex *v,
-                               double *energy) {
+                               const qc_solver *solver, const qc_complex *z, qc_complex *out,
+                               qc_complex *v, double *energy) {
     const qc_mesh *m = cover->mesh;
     work w = {0};
     qc_status status = work_create(ctx, m, z, &w) ? QC_OK : QC_ERR_NOMEM;
-    if (status == QC_OK) status = run(ctx, cover, cotangent, &w);
+    if (status == QC_OK) status = run(ctx, cover, cotangent, solver, &w);
     if (status == QC_OK) {
         double sum = 0;
         for (int32_t e = 0; e < m->n_edges; e++)

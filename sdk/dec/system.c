@@ -32,17 +32,16 @@ static qc_status name_pivot(qc_ctx *ctx, const qc__system *s, const char *elemen
 static qc_status factorise(qc_ctx *ctx, qc__system *s) {
     qc_hermitian A = s->stiffness->A;
     A.val = s->val;
-    qc_symbolic *symbolic = NULL;
-    qc_status status = qc_analyze(ctx, &A, NULL, &symbolic);
-    if (status == QC_OK) status = qc_factorize(ctx, symbolic, &A, &s->factor);
-    qc_symbolic_free(symbolic);
+    qc_status status = qc_solver_check(ctx, s->solver);
+    if (status == QC_OK) status = s->solver->analyze(s->solver, ctx, &A, NULL, &s->factor);
+    if (status == QC_OK) status = s->solver->factorize(ctx, s->factor, &A);
     return status;
 }
 
-qc_status qc__system_create(qc_ctx *ctx, const qc_stiffness *stiffness, int32_t n_elements,
-                            const char *element, qc__system *out) {
+qc_status qc__system_create(qc_ctx *ctx, const qc_solver *solver, const qc_stiffness *stiffness,
+                            int32_t n_elements, const char *element, qc__system *out) {
     const qc_hermitian *A = &stiffness->A;
-    qc__system s = {stiffness, n_elements, NULL, NULL, NULL};
+    qc__system s = {stiffness, solver ? solver : &qc_solver_builtin, n_elements, NULL, NULL, NULL};
     qc_status status = QC_OK;
     if (A->n > 0) {
         s.scale = QC__NEW(ctx, double, A->n);
@@ -64,7 +63,7 @@ qc_status qc__system_create(qc_ctx *ctx, const qc_stiffness *stiffness, int32_t 
 void qc__system_free(qc__system *s) {
     qc__free(s->scale);
     qc__free(s->val);
-    qc_factor_free(s->factor);
+    if (s->factor) s->solver->destroy(s->factor);
 }
 
 qc_status qc__system_solve(qc_ctx *ctx, const qc__system *s, qc_complex *x) {
@@ -77,7 +76,7 @@ qc_status qc__system_solve(qc_ctx *ctx, const qc__system *s, qc_complex *x) {
     if (A.n > 0) {
         for (int32_t i = 0; i < s->n_elements; i++)
             if (unknown[i] >= 0) b[unknown[i]] = qc__scale(s->scale[unknown[i]], x[i]);
-        status = qc_solve_refined(ctx, s->factor, &A, 1, b, NULL);
+        status = qc_solver_solve_refined(ctx, s->solver, s->factor, &A, 1, b, NULL);
     }
     for (int32_t i = 0; status == QC_OK && i < s->n_elements; i++) {
         const qc_complex zero = {0, 0};

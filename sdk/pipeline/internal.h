@@ -8,6 +8,7 @@
 #include <qc/pipeline.h>
 #include <qc/plugin.h>
 #include "sdk/base/internal.h"
+#include "sdk/pipeline/builtin.h"
 
 /* --- tables ----------------------------------------------------------------------------------- */
 
@@ -71,12 +72,19 @@ struct qc_registry {
     int64_t n, capacity;
     qc__library *library; /* in order of loading */
     int64_t n_libraries, library_capacity;
+    qc__offer *offer; /* interfaces of the host program, in order of registration */
+    int64_t n_offers, offer_capacity;
     qc_host host;
 };
 
 /* Registers n imported tables at once; nothing changes on NOMEM. */
 qc_status qc__registry_commit(qc_registry *registry, const qc_stage *const *stage, int64_t n);
 void qc__library_close(qc__library library);
+bool qc__has_extension(const qc_plugin *plugin);
+/* qc_registry_find_interface, also without a registry (NULL: built-in tables only). Errors start
+ * with `subject`. */
+qc_status qc__interface_find(qc_ctx *ctx, const qc_registry *registry, const char *subject,
+                             const char *id, const char *name, const qc_interface **out);
 
 typedef struct qc__step {
     char *name;

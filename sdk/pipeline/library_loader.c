@@ -26,6 +26,10 @@ static void *open_library(qc_ctx *ctx, const char *path) {
     return handle;
 }
 
+bool qc__has_extension(const qc_plugin *plugin) {
+    return plugin->struct_size >= PLUGIN_MINIMUM + sizeof plugin->extension && plugin->extension;
+}
+
 static qc_status check_table(qc_ctx *ctx, const char *path, const qc_plugin *plugin) {
     if (!plugin)
         return qc__fail(ctx, QC_ERR_ABI, -1,
@@ -37,16 +41,18 @@ static qc_status check_table(qc_ctx *ctx, const char *path, const qc_plugin *plu
                         "plugin %s: ABI %u.%u with a table of %u bytes; this library has ABI %d.%d",
                         path, plugin->abi_major, plugin->abi_minor, plugin->struct_size,
                         QC_ABI_MAJOR, QC_ABI_MINOR);
-    if (!plugin->id || !plugin->stages)
-        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "plugin %s: no id or no stages function", path);
+    if (!plugin->id || (!plugin->stages && !qc__has_extension(plugin)))
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
+                        "plugin %s: no id, or neither stages nor extension", path);
     return QC_OK;
 }
 
 /* Imports every table first and registers them together. */
 static qc_status add_stages(qc_registry *registry, const char *path, const qc_plugin *plugin) {
-    const qc_stage *const *table = plugin->stages();
+    const qc_stage *const *table = plugin->stages ? plugin->stages() : NULL;
     int64_t n = 0;
     while (table && table[n]) n++;
+    if (n == 0 && qc__has_extension(plugin)) return QC_OK;
     if (n == 0)
         return qc__fail(registry->ctx, QC_ERR_ARGUMENT, -1, "plugin %s: offers no stage", path);
     const qc_stage **copy = QC__NEW(registry->ctx, const qc_stage *, n);

@@ -100,12 +100,26 @@ static qc__step *need_step(qc_pipeline *pipeline, const char *step) {
     return NULL;
 }
 
+/* A text which names an interface must name one that is there. */
+static qc_status check_interface(const qc_registry *registry, const qc__step *step,
+                                 const qc_param *p, const char *text) {
+    const qc_interface *found;
+    char subject[160];
+    if (!p->choices || !p->choices[0]) return QC_OK;
+    snprintf(subject, sizeof subject, "parameter '%s' of stage '%s': ", p->name, step->name);
+    return qc__interface_find(registry->ctx, registry, subject, p->choices[0], text, &found);
+}
+
 /* A copy of the text, owned by the step, replaces the old one once the value has been accepted. */
-static qc_status set_param(qc_ctx *ctx, qc__step *step, const char *param, const char *text) {
+static qc_status set_param(const qc_registry *registry, qc__step *step, const char *param,
+                           const char *text) {
+    qc_ctx *ctx = registry->ctx;
     const int32_t i = qc__params_find(ctx, step->stage, step->name, param);
     if (i < 0) return qc_ctx_error(ctx)->status;
     const qc_param *p = &step->stage->params[i];
     if (p->type != QC_TEXT) return qc__param_set(ctx, p, step->name, step->params, text);
+    const qc_status status = check_interface(registry, step, p, text);
+    if (status != QC_OK) return status;
     char *copy = qc__copy_text(ctx, text);
     if (!copy) return QC_ERR_NOMEM;
     qc__free(step->text[i]);
@@ -119,7 +133,7 @@ qc_status qc_pipeline_set(qc_pipeline *pipeline, const char *step, const char *p
     qc__step *s = need_step(pipeline, step);
     if (!s) return qc_ctx_error(ctx)->status;
     const qc__range outer = qc__range_begin(ctx, s->name, 0, 1);
-    const qc_status status = set_param(ctx, s, param, text);
+    const qc_status status = set_param(pipeline->registry, s, param, text);
     qc__range_end(ctx, outer);
     return status;
 }

@@ -1,21 +1,17 @@
 /* The registry: built-in stages, stages of the host program and those of plugins, by id. */
-#include "sdk/pipeline/builtin.h"
 #include "sdk/pipeline/internal.h"
 #include <string.h>
 
-/* No host interface is offered yet; a plugin which asks for one does without. */
 static const void *get_interface(const qc_host *host, const char *id) {
-    (void)host;
-    (void)id;
-    return NULL;
+    return qc_registry_interface(host->host_data, id, 0);
 }
 
 qc_status qc_registry_create(qc_ctx *ctx, qc_registry **out) {
     qc_registry *r = QC__ZERO(ctx, qc_registry, 1);
     if (!r) return QC_ERR_NOMEM;
     r->ctx = ctx;
-    r->host = (qc_host){sizeof r->host, QC_ABI_MAJOR, QC_ABI_MINOR, "quadcover",
-                        qc_version(),   NULL,         get_interface};
+    r->host = (qc_host){sizeof r->host, QC_ABI_MAJOR, QC_ABI_MINOR, "quadcover", qc_version(), r,
+                        get_interface};
     r->arena = qc__arena_create(ctx);
     qc_status status = r->arena ? QC_OK : QC_ERR_NOMEM;
     for (size_t i = 0; status == QC_OK && qc__builtin_stages[i]; i++)
@@ -32,6 +28,7 @@ void qc_registry_free(qc_registry *registry) {
     if (!registry) return;
     while (registry->n_libraries > 0) qc__library_close(registry->library[--registry->n_libraries]);
     qc__free(registry->library);
+    qc__free(registry->offer);
     qc__free(registry->stage);
     qc__arena_free(registry->arena);
     qc__free(registry);

@@ -5,6 +5,7 @@
 /* One call of a stage; what its qc_run's host_data points to. */
 typedef struct call {
     qc_ctx *ctx;
+    const qc_registry *registry; /* NULL = the stage runs on its own */
     const char *name;
     const qc_stage *stage;
     const qc_object **input;  /* [n_in] borrowed; NULL = unwired */
@@ -49,13 +50,20 @@ static void run_log(const qc_run *run, int32_t level, const char *text) {
 
 static qc_status run_fail(const qc_run *run, qc_status status, int64_t where, const char *text) {
     const call *c = run->host_data;
-    return qc__fail(c->ctx, status == QC_OK ? QC_ERR_FAILED : status, where, "%s", text);
+    return qc_ctx_fail(c->ctx, status, where, text);
+}
+
+static const qc_interface *run_find(const qc_run *run, const char *id, const char *name) {
+    const call *c = run->host_data;
+    const qc_interface *found = NULL;
+    return qc__interface_find(c->ctx, c->registry, "", id, name, &found) == QC_OK ? found : NULL;
 }
 
 /* Runs the stage inside the current range; checks that it kept its promises. */
 static qc_status invoke(const call *c, const void *params) {
     const qc_run run = {sizeof run, (void *)(uintptr_t)c, c->ctx,  run_input,
-                        run_output, run_progress,         run_log, run_fail};
+                        run_output, run_progress,         run_log, run_fail,
+                        run_find};
     if (!qc__progress(c->ctx, 0.0)) return QC_ERR_CANCELLED;
     qc__clear_error(c->ctx);
     const qc_status status = c->stage->run(&run, params);
@@ -85,9 +93,11 @@ static qc_status run_call(call *c, const void *params, const char *prefix, qc_ba
     return status;
 }
 
-static qc_status create_call(qc_ctx *ctx, const char *name, const qc_stage *stage, call *out) {
-    call c = {ctx, name, stage, QC__ZERO(ctx, const qc_object *, stage->n_in),
-              QC__ZERO(ctx, const qc_object *, stage->n_out)};
+static qc_status create_call(qc_ctx *ctx, const qc_registry *registry, const char *name,
+                             const qc_stage *stage, call *out) {
+    call c = {.ctx = ctx, .registry = registry, .name = name, .stage = stage};
+    c.input = QC__ZERO(ctx, const qc_object *, stage->n_in);
+    c.output = QC__ZERO(ctx, const qc_object *, stage->n_out);
     if (!c.input || !c.output) {
         qc__free(c.input);
         qc__free(c.output);
@@ -105,7 +115,8 @@ static void free_call(call *c) {
 static qc_status run_step(const qc__scope *scope, uint32_t s, qc_bag *held) {
     qc__step *step = &scope->pipeline->step[s];
     call c;
-    qc_status status = create_call(scope->pipeline->registry->ctx, step->name, step->stage, &c);
+    const qc_registry *registry = scope->pipeline->registry;
+    qc_status status = create_call(registry->ctx, registry, step->name, step->stage, &c);
     if (status != QC_OK) return status;
     for (uint32_t p = 0; p < step->stage->n_in && status == QC_OK; p++) {
         /* The check has passed; only a wire to an optional output can still be unmet. */
@@ -164,7 +175,7 @@ static qc_status find_inputs(const call *c, const qc_bag *io) {
 
 static qc_status run_table(qc_ctx *ctx, const qc_stage *stage, const void *params, qc_bag *io) {
     call c;
-    qc_status status = create_call(ctx, qc__short_id(stage->id), stage, &c);
+    qc_status status = create_call(ctx, NULL, qc__short_id(stage->id), stage, &c);
     if (status != QC_OK) return status;
     qc_bag *held = NULL;
     void *defaults = NULL;

@@ -173,4 +173,9 @@ qc_status qc__lattice_search(qc_ctx *ctx, qc__lattice *Q, int32_t radius);
 void qc__blas_begin(void);
 void qc__blas_end(void);
 
+/* r <- b - A x, and max|r| / (max|A| max|x| + max|b|). */
+void qc__residual(const qc_hermitian *A, const qc_complex *b, const qc_complex *x, qc_complex *r);
+double qc__residual_size(const qc_hermitian *A, const qc_complex *b, const qc_complex *x,
+                         qc_complex *r);
+
 #endif

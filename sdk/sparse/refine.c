@@ -13,9 +13,7 @@ static void subtract(qc_complex *y, qc_complex a, qc_complex x, double sign) {
     y->im -= a.re * x.im + im * x.re;
 }
 
-/* r <- b - A x */
-static void residual_vector(const qc_hermitian *A, const qc_complex *b, const qc_complex *x,
-                            qc_complex *r) {
+void qc__residual(const qc_hermitian *A, const qc_complex *b, const qc_complex *x, qc_complex *r) {
     memcpy(r, b, (size_t)A->n * sizeof *r);
     for (int32_t j = 0; j < A->n; j++)
         for (int64_t p = A->colptr[j]; p < A->colptr[j + 1]; p++) {
@@ -35,6 +33,14 @@ static double largest(const qc_complex *x, int64_t n) {
     return max;
 }
 
+double qc__residual_size(const qc_hermitian *A, const qc_complex *b, const qc_complex *x,
+                         qc_complex *r) {
+    qc__residual(A, b, x, r);
+    const int32_t n = A->n;
+    const double scale = largest(A->val, A->colptr[n]) * largest(x, n) + largest(b, n);
+    return scale > 0 ? largest(r, n) / scale : 0;
+}
+
 qc_status qc_solve_refined(qc_ctx *ctx, const qc_factor *F, const qc_hermitian *A, int32_t steps,
                            qc_complex *x, double *residual) {
     const int32_t n = A->n;
@@ -51,7 +57,7 @@ qc_status qc_solve_refined(qc_ctx *ctx, const qc_factor *F, const qc_hermitian *
     if (n > 0) memcpy(solution, x, (size_t)n * sizeof *x);
     status = qc_solve(ctx, F, 1, solution);
     for (int32_t k = 0; k < steps && status == QC_OK; k++) {
-        residual_vector(A, x, solution, r);
+        qc__residual(A, x, solution, r);
         status = qc_solve(ctx, F, 1, r);
         for (int32_t i = 0; i < n && status == QC_OK; i++) {
             solution[i].re += r[i].re;
@@ -60,11 +66,7 @@ qc_status qc_solve_refined(qc_ctx *ctx, const qc_factor *F, const qc_hermitian *
         if (status == QC_OK && !qc__progress(ctx, (k + 1.0) / steps)) status = QC_ERR_CANCELLED;
     }
     if (status != QC_OK) goto done;
-    if (residual) {
-        residual_vector(A, x, solution, r);
-        const double scale = largest(A->val, A->colptr[n]) * largest(solution, n) + largest(x, n);
-        *residual = scale > 0 ? largest(r, n) / scale : 0;
-    }
+    if (residual) *residual = qc__residual_size(A, x, solution, r);
     if (n > 0) memcpy(x, solution, (size_t)n * sizeof *x);
 done:
     qc__free(r);

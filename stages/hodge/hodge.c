@@ -13,18 +13,24 @@ static const qc_port out[] = {
 
 typedef struct params {
     int64_t stiffening;
+    const char *solver;
 } params;
+static const char *const solvers[] = {QC_SOLVER_ID, NULL};
 
 static const qc_param table[] = {
     QC_PARAM_INT(params, stiffening, 12, 0, 50, "",
                  "rounds, at most, which raise the weight of folded faces and solve again while a "
                  "cone winds the wrong number of times"),
+    QC_PARAM_INTERFACE(params, solver, solvers,
+                       "factorises L*; builtin unless a plugin or the program offers another"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
     const params *p = raw;
     qc_hodge_options options = QC_HODGE_OPTIONS_INIT;
     options.stiffening = (int32_t)p->stiffening;
+    options.solver = (const qc_solver *)r->find(r, QC_SOLVER_ID, p->solver);
+    if (!options.solver) return QC_ERR_NOT_FOUND;
     qc_seamless_map *map = NULL;
     const qc_status status = qc_seamless_map_create(r->ctx, r->input(r, "matching"),
                                                     r->input(r, "sizing"), &options, &map);

@@ -11,6 +11,12 @@ AT(qc_object, reserved, 20);
 _Static_assert(sizeof(qc_object) == 24, "starts every object: can never grow");
 _Static_assert(sizeof(qc_complex) == 16, "two doubles");
 
+AT(qc_interface, struct_size, 0);
+AT(qc_interface, flags, 4);
+AT(qc_interface, name, 8);
+AT(qc_interface, doc, 16);
+_Static_assert(sizeof(qc_interface) == 24, "starts every interface table: can never grow");
+
 AT(qc_ctx_options, struct_size, 0);
 AT(qc_ctx_options, threads, 4);
 AT(qc_ctx_options, resize, 8);
@@ -47,6 +53,7 @@ AT(qc_run, output, 32);
 AT(qc_run, progress, 40);
 AT(qc_run, log, 48);
 AT(qc_run, fail, 56);
+AT(qc_run, find, 64);
 
 AT(qc_stage, struct_size, 0);
 AT(qc_stage, port_size, 4);

@@ -104,6 +104,22 @@ static void one_bad_stage_refuses_the_whole_plugin(void **state) {
     dlclose(held);
 }
 
+static void interfaces_come_after_those_of_the_host(void **state) {
+    fixture *f = *state;
+    const qc_interface *found = NULL;
+    assert_int_equal(qc_registry_load(f->registry, PLUGINS "offering.so"), QC_OK);
+    assert_int_equal(qc_registry_count(f->registry), 5); /* no stage */
+    assert_ptr_equal(qc_registry_interface(f->registry, GREETER, 0), &fixture_greeter);
+    assert_string_equal(qc_registry_interface(f->registry, GREETER, 1)->name, "first");
+    assert_string_equal(qc_registry_interface(f->registry, GREETER, 2)->name, "second");
+    assert_null(qc_registry_interface(f->registry, GREETER, 3));
+    assert_int_equal(qc_registry_find_interface(f->registry, GREETER, "second", &found), QC_OK);
+    assert_int_equal(found->flags, 3);
+    assert_int_equal(qc_registry_find_interface(f->registry, GREETER, "secnd", &found),
+                     QC_ERR_NOT_FOUND);
+    assert_non_null(strstr(error_text(f), "closest: 'second'"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(shorter_tables_are_read_by_their_strides, setup, teardown),
@@ -113,6 +129,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(foreign_libraries_are_refused_and_left_alone, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(one_bad_stage_refuses_the_whole_plugin, setup, teardown),
+        cmocka_unit_test_setup_teardown(interfaces_come_after_those_of_the_host, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -103,6 +103,13 @@ QC_API uint32_t qc_ctx_threads(const qc_ctx *ctx);
 /* Name of the vector instructions in use: "avx512", "avx2" or "portable". Static text. */
 QC_API const char *qc_ctx_instructions(const qc_ctx *ctx);
 
+/* For code outside the library that is called with a context: records an error (one line of text,
+ * copied) and returns its status, FAILED when that is QC_OK. */
+QC_API qc_status qc_ctx_fail(qc_ctx *ctx, qc_status status, int64_t where, const char *text);
+/* Reports the fraction done of the call under way; false: clean up and return QC_ERR_CANCELLED,
+ * which is recorded. */
+QC_API bool qc_ctx_progress(qc_ctx *ctx, double fraction);
+
 /* --- objects ---------------------------------------------------------------------------------- */
 
 /* First member of everything that travels through a pipeline port. `type` is the port's type id
@@ -122,6 +129,17 @@ QC_API void qc_object_init(qc_object *object, const char *type, void (*destroy)(
 QC_API void *qc_object_retain(const void *object);
 /* Drops a reference, destroying at zero. NULL is fine. Thread: any. */
 QC_API void qc_object_release(const void *object);
+
+/* --- interfaces ------------------------------------------------------------------------------- */
+
+/* First member of every table that is offered by id and name, such as a qc_solver ("qc.solver/1").
+ * The id, which carries its version, says what follows; struct_size, which members exist. */
+typedef struct qc_interface {
+    uint32_t struct_size; /* of the whole table  */
+    uint32_t flags;       /* defined by the id   */
+    const char *name;     /* "builtin", "mumps"  */
+    const char *doc;      /* one line, or NULL   */
+} qc_interface;
 
 /* --- numbers ---------------------------------------------------------------------------------- */
 

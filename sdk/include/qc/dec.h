@@ -18,7 +18,7 @@
 #define QC_DEC_H
 
 #include <qc/cover.h>
-#include <qc/sparse.h>
+#include <qc/solver.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -99,12 +99,13 @@ QC_API qc_status qc_hodge_decompose(qc_ctx *ctx, const qc_cover *cover, int32_t 
                                     const qc_complex *z, qc_complex *potential,
                                     qc_complex *copotential, qc_complex *harmonic);
 /* Removes the curl: Z^ = Z - J grad v with L* v = r (6.1), the curl-free form closest to Z, to
- * machine precision of max |Z| even on slivers. out may be z or NULL, v (n_edges) and energy may be
- * NULL; *energy = E_D = 1/2 |J grad v|^2 = 1/2 v^H L* v. Errors: NOT_POSDEF (where = edge: faces
- * without area), FAILED (where = edge: curl above 1e-9 max |Z| is left there), NOMEM, CANCELLED. */
+ * machine precision of max |Z| even on slivers. L* is factorised by `solver` (NULL = builtin). out
+ * may be z or NULL, v (n_edges) and energy may be NULL; *energy = E_D = 1/2 |J grad v|^2 = 1/2 v^H
+ * L* v. Errors: NOT_POSDEF (where = edge: faces without area), FAILED (where = edge: curl above
+ * 1e-9 max |Z| is left there), NOMEM, CANCELLED, those of the solver. */
 QC_API qc_status qc_hodge_remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
-                                      const qc_complex *z, qc_complex *out, qc_complex *v,
-                                      double *energy);
+                                      const qc_solver *solver, const qc_complex *z, qc_complex *out,
+                                      qc_complex *v, double *energy);
 
 /* Integrates a curl-free form over the surface cut along `cut` (n_edges flags; NULL = nothing)
  * after combing: f (3 n_faces corner values in the combed gauge, f' = i^{face_turn} f), f = 0 at

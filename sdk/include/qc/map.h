@@ -34,9 +34,10 @@ typedef struct qc_hodge_options {
     uint32_t struct_size;
     int32_t stiffening; /* rounds, at most, which raise the weight of folded faces and solve again
                            while a cone winds the wrong number of times; 0 = none */
+    const qc_solver *solver; /* factorises L*; borrowed for the call, NULL = builtin */
 } qc_hodge_options;
 #define QC_HODGE_OPTIONS_INIT                                                                      \
-    { sizeof(qc_hodge_options), 12 }
+    { sizeof(qc_hodge_options), 12, NULL }
 /* The Hodge step (thesis 4.1): scales the cross field by 1/length, removes its curl with the
  * complex matrix L*, cuts the surface by the shortest cut graph based at the singularities and
  * integrates. Errors: NOMEM, CANCELLED, ARGUMENT (matching and sizing of different meshes), FAILED

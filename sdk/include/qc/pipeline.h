@@ -45,6 +45,18 @@ QC_API const qc_param *qc_stage_param(const qc_stage *stage, uint32_t i);
 /* By id; the prefix "qc." may be left out. NOT_FOUND offers the closest id. */
 QC_API qc_status qc_registry_find(qc_registry *registry, const char *id, const qc_stage **out);
 
+/* Offers a table of the host program under an interface id, borrowed until the registry is freed
+ * (&solver.head under QC_SOLVER_ID). Errors: ABI (struct_size), ARGUMENT (no id or name). */
+QC_API qc_status qc_registry_offer(qc_registry *registry, const char *id,
+                                   const qc_interface *table);
+/* Table i under an id: the built-in ones, those of the host program, those of plugins in order of
+ * loading; NULL past the end. Borrowed until the registry is freed. */
+QC_API const qc_interface *qc_registry_interface(const qc_registry *registry, const char *id,
+                                                 uint32_t i);
+/* By name, the latest of equal names; name NULL or "" = table 0. NOT_FOUND offers the closest. */
+QC_API qc_status qc_registry_find_interface(qc_registry *registry, const char *id, const char *name,
+                                            const qc_interface **out);
+
 /* --- objects ---------------------------------------------------------------------------------- */
 
 typedef struct qc_bag qc_bag; /* named, typed, shared objects: input and output of runs           */

@@ -15,14 +15,15 @@ extern "C" {
 #endif
 
 #define QC_ABI_MAJOR 1 /* bump = new symbol name below; old plugins are not found, not crashed */
-#define QC_ABI_MINOR 0 /* bump = members appended; struct_size says which exist */
+#define QC_ABI_MINOR 1 /* bump = members appended; struct_size says which exist */
 
 typedef struct qc_host {
     uint32_t struct_size;
     uint16_t abi_major, abi_minor;
     const char *name, *version;
     void *host_data;
-    const void *(*get_interface)(const struct qc_host *host, const char *id); /* NULL = absent    */
+    /* The host's own table of an interface, a `const qc_interface *`; NULL = absent. */
+    const void *(*get_interface)(const struct qc_host *host, const char *id);
 } qc_host;
 
 typedef struct qc_plugin {
@@ -31,8 +32,12 @@ typedef struct qc_plugin {
     const char *id, *version, *license, *url;
     qc_status (*open)(const qc_host *host); /* NULL = nothing to do; may refuse (QC_ERR_ABI)      */
     void (*close)(void);                    /* NULL = nothing to do; not called after a refusal   */
-    const qc_stage *const *(*stages)(void); /* NULL-terminated, as long-lived as the library */
-    const void *(*extension)(const char *id); /* NULL = none; for later needs, found by id        */
+    /* NULL-terminated, as long-lived as the library; may be NULL where extension is not. */
+    const qc_stage *const *(*stages)(void);
+    /* What the plugin offers by id, NULL = nothing (also for ids it does not know). For interfaces
+     * such as QC_SOLVER_ID: a `const qc_interface *const *`, NULL-terminated, as long-lived as the
+     * library. May be called at any time between open and close. */
+    const void *(*extension)(const char *id);
 } qc_plugin;
 
 /* The definition in the plugin: QC_PLUGIN_EXPORT const qc_plugin qc_plugin_1 = { ... }; */

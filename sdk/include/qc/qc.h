@@ -12,6 +12,7 @@
 #include <qc/plugin.h>
 #include <qc/remesh.h>
 #include <qc/shape.h>
+#include <qc/solver.h>
 #include <qc/sparse.h>
 #include <qc/stage.h>
 #include <qc/stages.h>

@@ -32,7 +32,8 @@ typedef struct qc_param {
     uint32_t offset;
     double def, min, max;       /* def in [min, max], may be infinite; bool: 0/1; enum: def is a
                                    position, min and max ignored; text: all ignored               */
-    const char *const *choices; /* QC_ENUM: NULL-terminated names                                 */
+    const char *const *choices; /* QC_ENUM: NULL-terminated names; QC_TEXT: NULL, or { id, NULL }:
+                                   the text names an interface of that id (qc_run.find)           */
     const char *unit, *doc;     /* "deg", "edge" (= mean edge length), "" for pure numbers        */
 } qc_param;
 
@@ -46,6 +47,9 @@ typedef struct qc_param {
     { #field, QC_ENUM, (uint32_t)offsetof(S, field), def, 0, 0, choices, "", doc }
 #define QC_PARAM_TEXT(S, field, doc)                                                               \
     { #field, QC_TEXT, (uint32_t)offsetof(S, field), 0, 0, 0, NULL, "", doc }
+/* id: a `const char *const []` of an interface id and NULL. */
+#define QC_PARAM_INTERFACE(S, field, id, doc)                                                      \
+    { #field, QC_TEXT, (uint32_t)offsetof(S, field), 0, 0, 0, id, "", doc }
 
 /* A stage's whole view of its host; valid during run() only. Calling thread only. */
 typedef struct qc_run {
@@ -63,6 +67,9 @@ typedef struct qc_run {
     /* Records the error text (one line; which element, what to do) and returns status. Call it as
      * (run->fail)(...) where a macro `fail` is about. */
     qc_status (*fail)(const struct qc_run *run, qc_status status, int64_t where, const char *text);
+    /* The interface called `name` under an id (QC_SOLVER_ID), the built-in one for NULL; borrowed
+     * for the run. NULL after recording NOT_FOUND with the closest name. Since ABI minor 1. */
+    const qc_interface *(*find)(const struct qc_run *run, const char *id, const char *name);
 } qc_run;
 
 typedef struct qc_stage {

@@ -57,6 +57,7 @@ typedef struct hodge {
     qc_ctx *ctx;
     const qc_mesh *mesh;
     const int32_t *index4; /* n_vertices */
+    const qc_solver *solver;
     qc_cover cover;
     double *cotangent;  /* 3 n_faces */
     double *compliance; /* 3 n_faces: cotangents over the weights */
@@ -72,8 +73,8 @@ typedef struct hodge {
 static qc_status project(hodge *q) {
     const int64_t n_corners = 3 * (int64_t)q->mesh->n_faces;
     for (int64_t c = 0; c < n_corners; c++) q->compliance[c] = q->cotangent[c] / q->weight[c / 3];
-    qc_status status =
-        qc_hodge_remove_curl(q->ctx, &q->cover, q->compliance, q->frame, q->z, NULL, NULL);
+    qc_status status = qc_hodge_remove_curl(q->ctx, &q->cover, q->compliance, q->solver, q->frame,
+                                            q->z, NULL, NULL);
     double residual = 0;
     if (status == QC_OK)
         status = qc_form_integrate(q->ctx, &q->cover, q->cut, q->face_turn, q->z, q->f, &residual);
@@ -179,7 +180,11 @@ qc_status qc_seamless_map_create(qc_ctx *ctx, const qc_matching *matching, const
     qc_hodge_options o = QC_HODGE_OPTIONS_INIT;
     if (options)
         memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
-    hodge q = {.ctx = ctx, .mesh = mesh, .index4 = matching->index4, .cover = {mesh, matching->m}};
+    hodge q = {.ctx = ctx,
+               .mesh = mesh,
+               .index4 = matching->index4,
+               .cover = {mesh, matching->m},
+               .solver = o.solver};
     qc_seamless_map *map = QC__ZERO(ctx, qc_seamless_map, 1);
     qc_status status = allocate(&q);
     if (!map) status = QC_ERR_NOMEM;

@@ -10,7 +10,7 @@ static void remove_curl(qc_ctx *ctx, const surface *s, const qc_cover *cover, in
     qc_complex *z = random_form(m), *out = NEW_ARRAY(qc_complex, n),
                *diff = NEW_ARRAY(qc_complex, n);
     qc_complex *v = NEW_ARRAY(qc_complex, m->n_edges), *curl = NEW_ARRAY(qc_complex, m->n_edges);
-    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, out, v, &energy), QC_OK);
+    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, NULL, z, out, v, &energy), QC_OK);
     assert_int_equal(qc_form_curl_edges(ctx, cover, out, curl), QC_OK);
     assert_true(largest(m->n_edges, curl) < 1e-12 * largest(n, z));
     for (int32_t h = 0; h < n; h++)
@@ -23,8 +23,8 @@ static void remove_curl(qc_ctx *ctx, const surface *s, const qc_cover *cover, in
     for (int32_t h = 0; h < n; h++)
         assert_true(cabs(number(out[h]) - number(diff[h])) < 1e-12 * largest(n, z));
     /* In place, with nothing else asked for; a second time nothing is found. */
-    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, z, NULL, NULL), QC_OK);
-    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, NULL, NULL, &again), QC_OK);
+    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, NULL, z, z, NULL, NULL), QC_OK);
+    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, NULL, z, NULL, NULL, &again), QC_OK);
     assert_true(again < 1e-22 * energy);
     free(cot), free(z), free(out), free(diff), free(v), free(curl);
 }
@@ -39,13 +39,15 @@ static void test_gauge(void **state) {
     int32_t *turn = NEW_ARRAY(int32_t, m->n_faces);
     qc_complex *z = random_form(m);
     const qc_cover cover = {m, matching};
-    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, NULL, NULL, &energy[0]), QC_OK);
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, NULL, z, NULL, NULL, &energy[0]),
+                     QC_OK);
     for (int32_t t = 0; t < m->n_faces; t++) turn[t] = random_int(4);
     for (int32_t h = 0; h < 3 * m->n_faces; h++) z[h] = qc_quarter_turn(z[h], turn[h / 3]);
     for (int32_t e = 0; e < m->n_edges; e++)
         matching[e] = (int8_t)(matching[e] + turn[m->edge_halfedge[2 * e] / 3] -
                                turn[m->edge_halfedge[2 * e + 1] / 3]);
-    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, NULL, NULL, &energy[1]), QC_OK);
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, NULL, z, NULL, NULL, &energy[1]),
+                     QC_OK);
     assert_true(fabs(energy[0] / energy[1] - 1) < 1e-12);
     free(cot), free(matching), free(turn), free(z);
     qc_object_release(m);
@@ -64,7 +66,8 @@ static void test_scale(void **state) {
         const qc_cover cover = {m, matching};
         double *cot = cotangents(ctx, m);
         qc_complex *z = random_form(m);
-        assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, NULL, NULL, &energy[i]), QC_OK);
+        assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, NULL, z, NULL, NULL, &energy[i]),
+                         QC_OK);
         assert_true(fabs(energy[i] / energy[0] - 1) < 1e-11);
         free(cot), free(matching), free(z);
         qc_object_release(m);
@@ -106,7 +109,7 @@ static void test_slivers(void **state) {
         assert_int_equal(qc_tangent_edges(ctx, m, edge), QC_OK);
         assert_int_equal(qc_form_from_cross(ctx, m, edge, x, NULL, z), QC_OK);
         const double size = largest(n, z);
-        assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, z, NULL, NULL), QC_OK);
+        assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, NULL, z, z, NULL, NULL), QC_OK);
         assert_int_equal(qc_form_curl_edges(ctx, &cover, z, curl), QC_OK);
         assert_true(largest(m->n_edges, curl) < 1e-12 * size);
         free(matching), free(cot), free(edge), free(z), free(x), free(curl);
@@ -120,9 +123,40 @@ static void test_remove_curl(void **state) {
     (void)state, for_all_covers(remove_curl);
 }
 
+/* The table given is the one which factorises and solves. */
+static int solves;
+static qc_status counted_solve(qc_ctx *ctx, qc_solver_state *state, int32_t nrhs, qc_complex *x) {
+    solves++;
+    return qc_solver_builtin.solve(ctx, state, nrhs, x);
+}
+
+static void test_solver(void **state) {
+    (void)state;
+    qc_ctx *ctx = new_context();
+    qc_mesh *m = build_surface(ctx, &SURFACES[2], 1);
+    double *cot = cotangents(ctx, m), energy[2];
+    int8_t *matching = random_matching(m, SPARSE);
+    qc_complex *z = random_form(m);
+    const qc_cover cover = {m, matching};
+    qc_solver mine = qc_solver_builtin;
+    mine.solve = counted_solve;
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, NULL, z, NULL, NULL, &energy[0]),
+                     QC_OK);
+    assert_int_equal(solves, 0);
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, &mine, z, NULL, NULL, &energy[1]),
+                     QC_OK);
+    assert_true(solves >= 2 && energy[0] == energy[1]);
+    mine.destroy = NULL;
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, &mine, z, z, NULL, NULL),
+                     QC_ERR_ARGUMENT);
+    free(cot), free(matching), free(z);
+    qc_object_release(m);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_remove_curl),
-                                       cmocka_unit_test(test_gauge), cmocka_unit_test(test_scale),
-                                       cmocka_unit_test(test_slivers)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_remove_curl), cmocka_unit_test(test_solver),
+        cmocka_unit_test(test_gauge), cmocka_unit_test(test_scale), cmocka_unit_test(test_slivers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

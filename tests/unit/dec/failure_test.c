@@ -39,7 +39,7 @@ static qc_status call(qc_ctx *ctx, int which, const qc_cover *cover, const doubl
     qc_stiffness *s = NULL;
     double energy = -1;
     qc_status status = QC_OK;
-    if (which == 0) status = qc_hodge_remove_curl(ctx, cover, cot, z, out, v, &energy);
+    if (which == 0) status = qc_hodge_remove_curl(ctx, cover, cot, NULL, z, out, v, &energy);
     if (which == 1)
         status = qc_hodge_decompose(ctx, cover, QC_HODGE_NONCONFORMING, z, out, NULL, NULL);
     if (which == 2) status = qc_hodge_harmonic_basis(ctx, m, &count, &basis);
@@ -110,7 +110,7 @@ static void test_singular(void **state) {
     const qc_cover cover = {m, matching};
     double *cot = NEW_ARRAY(double, 3 * m->n_faces), energy = -1;
     qc_complex *z = random_form(m);
-    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, z, z, NULL, &energy),
+    assert_int_equal(qc_hodge_remove_curl(ctx, &cover, cot, NULL, z, z, NULL, &energy),
                      QC_ERR_NOT_POSDEF);
     assert_in_range(qc_ctx_error(ctx)->where, 0, m->n_edges - 1);
     assert_true(strstr(qc_ctx_error(ctx)->text, "edge") != NULL && energy == -1);

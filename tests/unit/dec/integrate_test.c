@@ -64,7 +64,7 @@ static void seamless(qc_ctx *ctx, const surface *s, const qc_cover *cover, int k
     qc_complex *z = random_form(m), *f = NEW_ARRAY(qc_complex, n);
     assert_int_equal(qc_form_integrate(ctx, cover, o.cut, o.turn, z, f, &residual), QC_OK);
     assert_true(residual > 1e-3);
-    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, z, z, NULL, NULL), QC_OK);
+    assert_int_equal(qc_hodge_remove_curl(ctx, cover, cot, NULL, z, z, NULL, NULL), QC_OK);
     assert_int_equal(qc_form_integrate(ctx, cover, o.cut, o.turn, z, f, &residual), QC_OK);
     assert_true(residual < 1e-11);
     for (int32_t e = 0; e < m->n_edges; e++) {

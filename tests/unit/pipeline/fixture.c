@@ -110,6 +110,9 @@ const qc_stage stage_bad = {
 const qc_stage *const qc__builtin_stages[] = {&stage_make, &stage_add, &stage_tag,
                                               &stage_read, &stage_bad, NULL};
 
+const qc_interface fixture_greeter = {sizeof(qc_interface), 0, "builtin", "says hello"};
+const qc__offer qc__builtin_interfaces[] = {{GREETER, &fixture_greeter}, {NULL, NULL}};
+
 static void *counted_resize(void *user, void *p, size_t old_size, size_t new_size) {
     fixture *f = user;
     (void)old_size;

@@ -12,6 +12,9 @@
 #define NUMBER "test.number/1"
 #define LABEL  "test.label/1"
 
+#define GREETER "test.greeter/1"
+extern const qc_interface fixture_greeter; /* built-in, called "builtin" */
+
 typedef struct number {
     qc_object object;
     double value;
