@@ -13,7 +13,7 @@ static void *default_resize(void *user, void *p, size_t old_size, size_t new_siz
         free(p);
         return NULL;
     }
-    return realloc(p, new_size);
+    return p ? realloc(p, new_size) : qc__large_block(new_size);
 }
 
 static uint32_t online_cores(void) {

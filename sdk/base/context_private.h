@@ -24,5 +24,7 @@ struct qc_ctx {
 };
 
 void qc__pool_free(qc__pool *pool);
+/* malloc which asks for large pages where a block is large enough to gain. */
+void *qc__large_block(size_t size);
 
 #endif

@@ -141,11 +141,15 @@ static int64_t local_row(const qc_symbolic *S, int32_t s, int32_t row) {
 static qc_status map_entries(qc_ctx *ctx, qc__pattern A, qc_symbolic *S) {
     const int32_t n = S->n, ns = S->nsuper;
     const int64_t nnz = A.colptr[n];
+    for (int32_t s = 0; s < ns; s++)
+        if (nnz > UINT32_MAX || S->panel[s + 1] - S->panel[s] > INT32_MAX)
+            return qc__fail(ctx, QC_ERR_UNSUPPORTED, -1,
+                            "matrix is too large: more than 2^32 entries, or 2^31 in one front");
     S->a_colptr = QC__NEW(ctx, int64_t, n + 1);
     S->a_row = QC__NEW(ctx, int32_t, nnz);
     S->entry = QC__ZERO(ctx, int64_t, ns + 1);
-    S->from = QC__NEW(ctx, int64_t, nnz);
-    S->to = QC__NEW(ctx, int64_t, nnz);
+    S->from = QC__NEW(ctx, uint32_t, nnz);
+    S->to = QC__NEW(ctx, int32_t, nnz);
     if (!S->a_colptr || !S->a_row || !S->entry || !S->from || !S->to) return QC_ERR_NOMEM;
     memcpy(S->a_colptr, A.colptr, ((size_t)n + 1) * sizeof *A.colptr);
     if (nnz > 0) memcpy(S->a_row, A.row, (size_t)nnz * sizeof *A.row);
@@ -159,8 +163,8 @@ static qc_status map_entries(qc_ctx *ctx, qc__pattern A, qc_symbolic *S) {
                     continue;
                 }
                 const int64_t q = S->entry[s]++, r = S->rowptr[s + 1] - S->rowptr[s];
-                const int64_t offset = (column - S->super[s]) * r + local_row(S, s, row);
-                S->from[q] = p;
+                const int32_t offset = (int32_t)((column - S->super[s]) * r + local_row(S, s, row));
+                S->from[q] = (uint32_t)p;
                 S->to[q] = a > b ? offset : ~offset; /* A(a,b) lies above the diagonal: conjugate */
             }
         for (int64_t s = 0, sum = 0; pass == 0 && s <= ns; s++) {

@@ -23,6 +23,7 @@ qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t component
 void qc_factor_free(qc_factor *F) {
     if (!F) return;
     qc_symbolic_free(F->S);
+    qc__workspace_free(F->workspace);
     qc__free(F->values);
     qc__free(F->D);
     qc__free(F->diagonal);

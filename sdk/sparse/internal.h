@@ -43,9 +43,19 @@ typedef struct qc__plan {
     int64_t stack, area; /* entries of one worker's stack and of the shared area */
     int64_t work;        /* doubles which qc__front_factor needs at most        */
     int32_t largest_front, largest_width;
-    bool uses_blas;
     double flops;
 } qc__plan;
+
+/* workspace.c */
+typedef struct qc__workspace {
+    uint32_t workers;
+    double *area;                    /* shared update matrices */
+    double **stack, **work, **floor; /* by worker */
+    int32_t *failed;                 /* by task: permuted column, or -1 */
+} qc__workspace;
+qc__workspace *qc__workspace_create(qc_ctx *ctx, const qc__plan *plan, int32_t components,
+                                    uint32_t workers);
+void qc__workspace_free(qc__workspace *space); /* NULL is fine */
 
 struct qc_symbolic {
     atomic_int references;
@@ -61,8 +71,9 @@ struct qc_symbolic {
     int64_t *panel;    /* nsuper + 1: offset of the r x w column-major panel                  */
     int64_t *a_colptr; /* the analysed pattern of A, the caller's numbering                   */
     int32_t *a_row;
-    int64_t *entry;     /* nsuper + 1 into from / to: entries of A by supernode                */
-    int64_t *from, *to; /* position in A; offset in the panel, ~offset when conjugated         */
+    int64_t *entry; /* nsuper + 1 into from / to: entries of A by supernode                */
+    uint32_t *from; /* position in A                                                      */
+    int32_t *to;    /* offset in the panel, ~offset when conjugated */
     qc__plan plan;
     int64_t nnz_l;
     double flops;
@@ -75,8 +86,9 @@ struct qc_factor {
     bool usable;
     double *values; /* panels: unit lower triangle, the strict upper part is undefined */
     double *D; /* n pivots, permuted                                                           */
-    double *diagonal; /* n: diagonal of A, permuted: the scale of each pivot */
-    double *journal;  /* updown: old columns, for roll back; grows  */
+    double *diagonal;         /* n: diagonal of A, permuted: the scale of each pivot */
+    qc__workspace *workspace; /* NULL until the first refactorisation, which keeps it */
+    double *journal;          /* updown: old columns, for roll back; grows  */
     int32_t *journal_column;
     int64_t journal_size, journal_columns; /* capacities */
     int64_t journal_used, journal_count; /* doubles, columns recorded                            */
@@ -130,20 +142,20 @@ qc_status qc__journal_open(qc_ctx *ctx, qc_factor *F, int32_t s);
 void qc__journal_record(qc_factor *F, int32_t column, const double *x, int64_t count);
 void qc__journal_roll_back(qc_factor *F);
 
-/* kernel.c: y_q -= sum_k X_k c[k * 4 + q] for four columns (q = 0..3), or one (stride 1). */
-void qc__subtract4(int64_t n, int64_t K, const double *X, int64_t ldx, const double *c, double *y,
-                   int64_t ldy);
-void qc__subtract1(int64_t n, int64_t K, const double *X, int64_t ldx, const double *c, double *y);
-
-/* front.c, front_real.c: partial LDL^H of one front in place. panel: r x w, U: m x m, m = r - w
- * (lower triangle, updated), D: w out, floor: w. work: qc__front_work entries. Returns -1, or the
- * local column whose pivot is not above its floor. */
-int32_t qc__front_factor(int32_t r, int32_t w, double *panel, double *U, double *D,
-                         const double *floor, double *work);
-int32_t qc__front_factor_real(int32_t r, int32_t w, double *panel, double *U, double *D,
-                              const double *floor, double *work);
-int64_t qc__front_work(int32_t r, int32_t w); /* doubles */
-bool qc__front_uses_blas(int32_t r, int32_t w);
+/* front.c, front_real.c: partial LDL^H of one front in place. */
+typedef struct qc__front {
+    int32_t r, w;
+    double *panel, *U;   /* r x w; m x m with m = r - w, lower triangle updated */
+    bool fresh;          /* U counts as zero */
+    double *D;           /* w, out */
+    const double *floor; /* w: pivots have to be larger */
+    double *work;        /* qc__front_work doubles */
+} qc__front;
+int64_t qc__front_work(int32_t r, int32_t w);
+/* ctx: of the calling thread when its pool may help, else NULL. Returns -1, or the local column
+ * whose pivot is not above its floor. */
+int32_t qc__front_factor(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *front);
+int32_t qc__front_factor_real(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *front);
 
 /* The closest-vector problem min 1/2 (z - t)^T P (z - t) while it is being solved. */
 typedef struct qc__lattice {

@@ -7,23 +7,23 @@
 typedef struct run {
     const qc_symbolic *S;
     qc_factor *F;
-    const double *val;      /* in the order of the analysed pattern */
-    double *area;           /* shared update matrices */
-    double **stack, **work; /* by worker */
-    double **floor;         /* by worker */
-    int32_t *failed;        /* by task: permuted column, or -1 */
-    int32_t task;           /* first task of the present step */
+    const double *val; /* in the order of the analysed pattern */
+    const qc__workspace *space;
+    int32_t task; /* first task of the present step */
 } run;
 
-/* Panel <- entries of A, diagonal; the update matrix <- 0. */
-static void load(const run *R, int32_t s, double *panel, double *U, double *floor) {
+/* Panel <- entries of A. */
+static void load(const run *R, int32_t s, double *panel, double *floor) {
     const qc_symbolic *S = R->S;
     const int64_t r = S->rowptr[s + 1] - S->rowptr[s], first = S->super[s];
-    const int64_t w = S->super[s + 1] - first, m = r - w;
+    const int64_t w = S->super[s + 1] - first;
     memset(panel, 0, (size_t)(NC * r * w) * sizeof *panel);
-    for (int64_t q = S->entry[s]; q < S->entry[s + 1]; q++) {
+    const int64_t end = S->entry[s + 1], last = S->entry[S->nsuper] - 1;
+    for (int64_t q = S->entry[s]; q < end; q++) {
+        const int64_t ahead = q + 24 < last ? q + 24 : last;
+        QC__PREFETCH(R->val + NC * (int64_t)S->from[ahead]);
         const bool conjugate = S->to[q] < 0;
-        const double *a = R->val + NC * S->from[q];
+        const double *a = R->val + NC * (int64_t)S->from[q];
         double *x = panel + NC * (conjugate ? ~S->to[q] : S->to[q]);
         x[0] = a[0];
         if (NC == 2) x[1] = conjugate ? -a[1] : a[1];
@@ -35,45 +35,38 @@ static void load(const run *R, int32_t s, double *panel, double *U, double *floo
         floor[k] = qc__pivot_floor(S->n, x[0]);
         if (!(floor[k] >= 0)) floor[k] = 0; /* a diagonal <= 0 or NaN fails as a pivot */
     }
-    if (m > 0) memset(U, 0, (size_t)(NC * m * m) * sizeof *U);
 }
 
-/* Lower triangle of the child's update matrix into the front; local rows ascend, so the lower
- * triangle goes to the lower triangle. */
-static void extend_add(const qc_symbolic *S, int32_t c, const double *Uc, int64_t r, int64_t w,
-                       double *panel, double *U) {
-    const int64_t wc = S->super[c + 1] - S->super[c];
-    const int64_t mc = S->rowptr[c + 1] - S->rowptr[c] - wc, m = r - w;
-    const int32_t *local = S->relative + S->rowptr[c] + wc;
-    for (int64_t j = 0; j < mc; j++) {
-        const int64_t column = local[j];
-        const double *x = Uc + NC * j * mc;
-        double *y = column < w ? panel : U;
-        const int64_t start = column < w ? column * r : (column - w) * m - w;
-        for (int64_t i = j; i < mc; i++) {
-            double *to = y + NC * (start + local[i]);
-            to[0] += x[NC * i];
-            if (NC == 2) to[1] += x[NC * i + 1];
-        }
-    }
+static void extend_add(const run *R, int32_t c, const double *child, const qc__front *front) {
+    const qc_symbolic *S = R->S;
+    const int64_t w = S->super[c + 1] - S->super[c], begin = S->rowptr[c] + w;
+    R->F->kernels->extend_add(S->rowptr[c + 1] - begin, S->relative + begin, child, front->r,
+                              front->w, front->panel, front->U);
 }
 
 static double *update_of(const run *R, int32_t s, uint32_t worker) {
     const qc__plan *plan = &R->S->plan;
-    return (plan->shared[s] ? R->area : R->stack[worker]) + NC * plan->update[s];
+    return (plan->shared[s] ? R->space->area : R->space->stack[worker]) + NC * plan->update[s];
 }
 
-/* Returns the permuted column of a failed pivot, or -1. */
-static int32_t factor_supernode(const run *R, int32_t s, uint32_t worker) {
+/* ctx: see qc__front_factor. Returns the permuted column of a failed pivot, or -1. */
+static int32_t factor_supernode(const run *R, qc_ctx *ctx, int32_t s, uint32_t worker) {
     const qc_symbolic *S = R->S;
     const int32_t first = S->super[s], w = S->super[s + 1] - first;
-    const int32_t r = (int32_t)(S->rowptr[s + 1] - S->rowptr[s]);
-    double *panel = R->F->values + NC * S->panel[s], *U = update_of(R, s, worker);
-    load(R, s, panel, U, R->floor[worker]);
+    const int32_t r = (int32_t)(S->rowptr[s + 1] - S->rowptr[s]), m = r - w;
+    const qc__front front = {r,
+                             w,
+                             R->F->values + NC * S->panel[s],
+                             update_of(R, s, worker),
+                             S->child[s] == -1,
+                             R->F->D + first,
+                             R->space->floor[worker],
+                             R->space->work[worker]};
+    load(R, s, front.panel, R->space->floor[worker]);
+    if (!front.fresh && m > 0) memset(front.U, 0, (size_t)(NC * m * m) * sizeof *front.U);
     for (int32_t c = S->child[s]; c != -1; c = S->sibling[c])
-        extend_add(S, c, update_of(R, c, worker), r, w, panel, U);
-    const int32_t bad =
-        NAME(qc__front_factor)(r, w, panel, U, R->F->D + first, R->floor[worker], R->work[worker]);
+        extend_add(R, c, update_of(R, c, worker), &front);
+    const int32_t bad = NAME(qc__front_factor)(ctx, R->F->kernels, &front);
     return bad < 0 ? -1 : first + bad;
 }
 
@@ -81,9 +74,9 @@ static void run_tasks(void *arg, int64_t begin, int64_t end, uint32_t worker) {
     const run *R = arg;
     for (int64_t t = R->task + begin; t < R->task + end; t++) {
         const qc__task task = R->S->plan.task[t];
-        R->failed[t] = -1;
-        for (int32_t s = task.first; s <= task.last && R->failed[t] < 0; s++)
-            R->failed[t] = factor_supernode(R, s, worker);
+        R->space->failed[t] = -1;
+        for (int32_t s = task.first; s <= task.last && R->space->failed[t] < 0; s++)
+            R->space->failed[t] = factor_supernode(R, NULL, s, worker);
     }
 }
 
@@ -103,11 +96,11 @@ static qc_status run_step(qc_ctx *ctx, run *R, const qc__step *step, double done
     R->task = step->task;
     qc__parallel_for(ctx, step->task_end - step->task, 1, run_tasks, R);
     for (int32_t t = step->task; t < step->task_end; t++)
-        if (R->failed[t] >= 0) return not_posdef(ctx, R->S, R->failed[t]);
+        if (R->space->failed[t] >= 0) return not_posdef(ctx, R->S, R->space->failed[t]);
     for (int32_t k = 0; k < tops; k++) {
         const double fraction = (done + step->flops * k / tops) / plan->flops;
         if (!qc__progress(ctx, fraction)) return QC_ERR_CANCELLED;
-        const int32_t bad = factor_supernode(R, plan->top[step->top + k], 0);
+        const int32_t bad = factor_supernode(R, ctx, plan->top[step->top + k], 0);
         if (bad >= 0) return not_posdef(ctx, R->S, bad);
     }
     return QC_OK;
@@ -124,47 +117,24 @@ static qc_status run_plan(qc_ctx *ctx, run *R) {
     return qc__progress(ctx, 1.0) ? QC_OK : QC_ERR_CANCELLED;
 }
 
-static void free_workers(run *R, uint32_t workers) {
-    for (uint32_t t = 0; R->stack && t < workers; t++) qc__free(R->stack[t]);
-    qc__free(R->stack);
-    qc__free(R->area);
-    qc__free(R->failed);
-}
-
-/* One block per worker: stack, then work, then floor. */
-static bool allocate_workers(qc_ctx *ctx, run *R, double **pointers, uint32_t workers) {
-    const qc__plan *plan = &R->S->plan;
-    const int64_t work = plan->work;
-    R->stack = pointers;
-    R->work = pointers + workers;
-    R->floor = pointers + 2 * (size_t)workers;
-    R->area = QC__NEW(ctx, double, NC * plan->area);
-    R->failed = QC__NEW(ctx, int32_t, plan->ntask);
-    bool ok = R->area && R->failed;
-    for (uint32_t t = 0; ok && t < workers; t++) {
-        R->stack[t] = QC__NEW(ctx, double, NC * plan->stack + work + plan->largest_width);
-        if (!R->stack[t]) return false;
-        R->work[t] = R->stack[t] + NC * plan->stack;
-        R->floor[t] = R->work[t] + work;
-    }
-    return ok;
-}
-
-/* val: in the order of the analysed pattern */
-static qc_status factor_values(qc_ctx *ctx, qc_factor *F, const double *val) {
+/* val: in the order of the analysed pattern. keep: the workspace stays for the next time. */
+static qc_status factor_values(qc_ctx *ctx, qc_factor *F, const double *val, bool keep) {
     const qc__plan *plan = &F->S->plan;
-    const uint32_t threads = qc_ctx_threads(ctx);
-    const uint32_t workers = plan->ntask > 1 ? threads : 1;
-    run R = {F->S, F, val, NULL, NULL, NULL, NULL, NULL, 0};
-    double **pointers = QC__ZERO(ctx, double *, 3 * (size_t)workers);
-    if (!pointers) return QC_ERR_NOMEM;
-    qc_status status = QC_ERR_NOMEM;
-    if (allocate_workers(ctx, &R, pointers, workers)) {
-        if (plan->uses_blas) qc__blas_begin();
-        status = run_plan(ctx, &R);
-        if (plan->uses_blas) qc__blas_end();
+    const bool uses_blas = plan->largest_width >= F->kernels->blas_width;
+    const uint32_t workers = plan->ntask > 1 ? qc_ctx_threads(ctx) : 1;
+    qc__workspace *space = F->workspace;
+    if (!space || space->workers < workers) {
+        space = qc__workspace_create(ctx, plan, NC, workers);
+        if (!space) return QC_ERR_NOMEM;
     }
-    free_workers(&R, workers);
+    run R = {F->S, F, val, space, 0};
+    if (uses_blas) qc__blas_begin();
+    const qc_status status = run_plan(ctx, &R);
+    if (uses_blas) qc__blas_end();
+    if (space != F->workspace) {
+        qc__workspace_free(keep ? F->workspace : space);
+        if (keep) F->workspace = space;
+    }
     F->usable = status == QC_OK;
     return status;
 }
@@ -195,18 +165,18 @@ static qc_status expand(qc_ctx *ctx, const qc_symbolic *S, const matrix *A, doub
     return QC_OK;
 }
 
-static qc_status factor_matrix(qc_ctx *ctx, qc_factor *F, const matrix *A) {
+static qc_status factor_matrix(qc_ctx *ctx, qc_factor *F, const matrix *A, bool keep) {
     const qc_symbolic *S = F->S;
     if (A->n != S->n)
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "matrix has %d rows, the analysed one %d",
                         (int)A->n, (int)S->n);
     if (!A->colptr || (A->n > 0 && (!A->row || !A->val)))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "matrix to factorise has no entries");
-    if (same_pattern(S, A)) return factor_values(ctx, F, (const double *)A->val);
+    if (same_pattern(S, A)) return factor_values(ctx, F, (const double *)A->val, keep);
     double *val = QC__NEW(ctx, double, NC * S->a_colptr[S->n]);
     if (!val) return QC_ERR_NOMEM;
     qc_status status = expand(ctx, S, A, val);
-    if (status == QC_OK) status = factor_values(ctx, F, val);
+    if (status == QC_OK) status = factor_values(ctx, F, val, keep);
     qc__free(val);
     return status;
 }
@@ -215,7 +185,7 @@ qc_status NAME(qc_factorize)(qc_ctx *ctx, const qc_symbolic *S, const matrix *A,
     qc_factor *F;
     qc_status status = qc__factor_create(ctx, S, NC, &F);
     if (status != QC_OK) return status;
-    status = factor_matrix(ctx, F, A);
+    status = factor_matrix(ctx, F, A, false);
     if (status == QC_OK)
         *out = F;
     else
@@ -227,5 +197,5 @@ qc_status NAME(qc_refactorize)(qc_ctx *ctx, qc_factor *F, const matrix *A) {
     qc_status status = qc__factor_check(ctx, F, NC, false);
     if (status != QC_OK) return status;
     F->usable = false;
-    return factor_matrix(ctx, F, A);
+    return factor_matrix(ctx, F, A, true);
 }

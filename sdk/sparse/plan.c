@@ -156,7 +156,6 @@ static void measure(const qc_symbolic *S, qc__plan *plan) {
         if (r > plan->largest_front) plan->largest_front = r;
         if (w > plan->largest_width) plan->largest_width = w;
         if (qc__front_work(r, w) > plan->work) plan->work = qc__front_work(r, w);
-        if (qc__front_uses_blas(r, w)) plan->uses_blas = true;
     }
 }
 

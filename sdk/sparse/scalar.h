@@ -5,6 +5,12 @@
 
 #include "sdk/sparse/internal.h"
 
+#ifdef __GNUC__
+#define QC__PREFETCH(p) __builtin_prefetch(p)
+#else
+#define QC__PREFETCH(p) ((void)0)
+#endif
+
 #ifdef QC__REAL
 #define NC      1
 #define NAME(x) x##_real

@@ -90,8 +90,8 @@ typedef struct qc_error {
     const char *stage, *text; /* never NULL; text is one line */
 } qc_error;
 
-/* options NULL = defaults. The caller owns *out. Errors: ARGUMENT (also: unknown instructions), NOMEM,
- * UNSUPPORTED (instructions which the processor lacks). Thread: any. */
+/* options NULL = defaults. The caller owns *out. Errors: ARGUMENT (also: unknown instructions),
+ * NOMEM, UNSUPPORTED (instructions which the processor lacks). Thread: any. */
 QC_API qc_status qc_ctx_create(const qc_ctx_options *options, qc_ctx **out);
 /* NULL is fine; cannot fail. Objects made through the context may outlive it as long as the
  * allocator's user data does. */

@@ -74,7 +74,8 @@ QC_API qc_status qc_factorize(qc_ctx *ctx, const qc_symbolic *S, const qc_hermit
                               qc_factor **out);
 QC_API qc_status qc_factorize_real(qc_ctx *ctx, const qc_symbolic *S, const qc_symmetric *A,
                                    qc_factor **out);
-/* New values, same pattern, no allocation of the factor. On error F is unusable until a refactorise
+/* New values, same pattern. Its first call keeps a workspace in F; later calls with as many threads
+ * allocate nothing. On error F is unusable until a refactorise
  * succeeds (solves then answer ARGUMENT). */
 QC_API qc_status qc_refactorize(qc_ctx *ctx, qc_factor *F, const qc_hermitian *A);
 QC_API qc_status qc_refactorize_real(qc_ctx *ctx, qc_factor *F, const qc_symmetric *A);

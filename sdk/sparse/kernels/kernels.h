@@ -6,8 +6,30 @@
 
 #include "sdk/base/internal.h"
 
+/* Steps of the partial LDL^H of one front (front_kernel.c): a panel of r rows and w columns and the
+ * m x m update matrix U, m = r - w, both column-major; only lower triangles count. Columns [k0, k1)
+ * are a block of at most QC__FRONT_BLOCK whose earlier blocks are subtracted. */
+enum { QC__FRONT_BLOCK = 48, QC__TILE_LANES = 24 /* doubles of a row tile, at most */ };
+
 typedef struct qc__kernels {
     int32_t components; /* 1 real, 2 complex */
+    int32_t blas_width; /* BLAS is faster for fronts with this many columns */
+    /* Adds the lower triangle of a child's m x m update matrix into a front (see extend_add.c). */
+    void (*extend_add)(int64_t m, const int32_t *local, const double *child, int64_t r, int64_t w,
+                       double *panel, double *U);
+    /* Finishes the block. B: work of NC * 4 * QC__FRONT_BLOCK doubles. Returns the column whose
+     * pivot is not above its floor, or -1. */
+    int32_t (*front_factor_block)(int64_t r, int64_t k0, int64_t k1, double *panel, double *D,
+                                  const double *floor, double *B);
+    /* Multipliers of the block for all later rows: NC * (k1 - k0) * (r - k1 + 8) doubles. */
+    void (*front_pack)(int64_t r, int64_t w, int64_t k0, int64_t k1, const double *panel,
+                       const double *D, double *B);
+    /* Number of row tiles below a block which ends at k1. They are independent of each other. */
+    int64_t (*front_tiles)(int64_t r, int64_t w, int64_t k1);
+    /* Subtracts the block from row tile t. fresh: U counts as zero. copy: work of QC__TILE_LANES *
+     * QC__FRONT_BLOCK doubles. */
+    void (*front_subtract)(int64_t r, int64_t w, int64_t k0, int64_t k1, double *panel, double *U,
+                           const double *B, bool fresh, int64_t t, double *copy);
 } qc__kernels;
 
 /* The table for one instruction set; components: 1 real, 2 complex. */
@@ -17,6 +39,15 @@ const qc__kernels *qc__kernels_for(qc__isa isa, int32_t components);
 #define QC__PASTE2(f, variant) f##_##variant
 #define QC__PASTE(f, variant)  QC__PASTE2(f, variant)
 #define KERNEL(f)              QC__PASTE(f, QC__VARIANT)
+void KERNEL(qc__extend_add)(int64_t m, const int32_t *local, const double *child, int64_t r,
+                            int64_t w, double *panel, double *U);
+int32_t KERNEL(qc__front_factor_block)(int64_t r, int64_t k0, int64_t k1, double *panel, double *D,
+                                       const double *floor, double *B);
+void KERNEL(qc__front_pack)(int64_t r, int64_t w, int64_t k0, int64_t k1, const double *panel,
+                            const double *D, double *B);
+int64_t KERNEL(qc__front_tiles)(int64_t r, int64_t w, int64_t k1);
+void KERNEL(qc__front_subtract)(int64_t r, int64_t w, int64_t k0, int64_t k1, double *panel,
+                                double *U, const double *B, bool fresh, int64_t t, double *copy);
 #ifdef QC__REAL
 #define NC 1
 #else

@@ -6,6 +6,15 @@
 
 #include <stdint.h>
 
+/* Small loops with constant bounds must vanish: what they run over has to stay in registers. */
+#if defined(__GNUC__)
+#define QC__INLINE static inline __attribute__((always_inline))
+#define QC__UNROLL _Pragma("GCC unroll 16")
+#else
+#define QC__INLINE static inline
+#define QC__UNROLL
+#endif
+
 #if defined(QC__ISA_AVX512)
 #include <immintrin.h>
 enum { LANES = 8 };

@@ -13,9 +13,7 @@ static void check_product(const qc_factor *F, const test_matrix *M, bool real) {
     free(B);
 }
 
-static void product_is_the_matrix(void **state) {
-    (void)state;
-    qc_ctx *ctx = new_ctx(1);
+static void check_shapes(qc_ctx *ctx) {
     for (int shape = 0; shape < SHAPES; shape++)
         for (int32_t n = 0; n <= 200; n += n < 6 ? 1 : 61)
             for (int32_t ordering = 0; ordering < 2; ordering++) {
@@ -30,7 +28,45 @@ static void product_is_the_matrix(void **state) {
                 qc_factor_free(F);
                 free_matrix(&M);
             }
-    qc_ctx_free(ctx);
+}
+
+static void product_is_the_matrix(void **state) {
+    (void)state;
+    for (int set = 0; set < 3; set++) {
+        qc_ctx *ctx = new_ctx_with(1, instruction_sets[set]);
+        if (!ctx) continue;
+        assert_string_equal(qc_ctx_instructions(ctx), instruction_sets[set]);
+        check_shapes(ctx);
+        qc_ctx_free(ctx);
+    }
+}
+
+/* A front of every small size: dense blocks of w columns which all touch the same m last rows. */
+static void fronts_of_every_size(void **state) {
+    (void)state;
+    for (int set = 0; set < 3; set++) {
+        qc_ctx *ctx = new_ctx_with(1, instruction_sets[set]);
+        if (!ctx) continue;
+        for (int32_t w = 1; w < 60; w += w < 14 ? 1 : 15)
+            for (int32_t m = 0; m < 30; m += m < 14 ? 1 : 5) {
+                int32_t(*edge)[2] = malloc(sizeof *edge * (size_t)((w + m) * (w + m)));
+                int64_t ne = 0;
+                for (int32_t i = 0; i < w + m; i++)
+                    for (int32_t j = 0; j < i && j < w; j++) edge[ne][0] = i, edge[ne++][1] = j;
+                test_matrix M = from_edges(w + m, ne, (const int32_t(*)[2])edge, 0.1);
+                qc_analyze_options options = QC_ANALYZE_OPTIONS_INIT;
+                options.ordering = QC_ORDER_NATURAL;
+                qc_factor *F = factor_of(ctx, &M, &options);
+                check_product(F, &M, false);
+                qc_factor_free(F);
+                F = real_factor_of(ctx, &M, &options);
+                check_product(F, &M, true);
+                qc_factor_free(F);
+                free_matrix(&M);
+                free(edge);
+            }
+        qc_ctx_free(ctx);
+    }
 }
 
 /* Scaling by 1e-6 or 1e6 scales D and leaves L. */
@@ -156,9 +192,10 @@ static void subset_of_the_pattern(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(product_is_the_matrix),     cmocka_unit_test(scale_does_not_matter),
-        cmocka_unit_test(pivot_summaries),           cmocka_unit_test(singular_matrix_is_refused),
-        cmocka_unit_test(indefinite_pivot_is_named), cmocka_unit_test(subset_of_the_pattern),
+        cmocka_unit_test(product_is_the_matrix),      cmocka_unit_test(fronts_of_every_size),
+        cmocka_unit_test(scale_does_not_matter),      cmocka_unit_test(pivot_summaries),
+        cmocka_unit_test(singular_matrix_is_refused), cmocka_unit_test(indefinite_pivot_is_named),
+        cmocka_unit_test(subset_of_the_pattern),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,21 +24,20 @@ static test_matrix big(void) {
     return M;
 }
 
-static void same_bytes_for_any_number_of_threads(void **state) {
-    (void)state;
-    test_matrix M = big();
+static void check_thread_counts(const test_matrix *M, const char *instructions) {
     uint64_t expected[2] = {0, 0};
     qc_complex *first = NULL;
-    const size_t size = (size_t)M.n * 20;
+    const size_t size = (size_t)M->n * 20;
     static const uint32_t counts[] = {1, 2, 3, 8};
     for (size_t i_count = 0; i_count < 4; i_count++) {
         const uint32_t threads = counts[i_count];
-        qc_ctx *ctx = new_ctx(threads);
-        qc_factor *F = factor_of(ctx, &M, NULL), *G = real_factor_of(ctx, &M, NULL);
-        assert_true(F->S->plan.ntask > 2 && F->S->plan.uses_blas);
+        qc_ctx *ctx = new_ctx_with(threads, instructions);
+        if (!ctx) return;
+        qc_factor *F = factor_of(ctx, M, NULL), *G = real_factor_of(ctx, M, NULL);
+        assert_true(F->S->plan.ntask > 2);
         qc_complex *x = malloc(size * sizeof *x);
         double residual = 1;
-        const qc_hermitian A = hermitian(&M);
+        const qc_hermitian A = hermitian(M);
         for (size_t i = 0; i < size; i++) x[i] = (qc_complex){sin((double)i), cos((double)i)};
         assert_int_equal(qc_solve_refined(ctx, F, &A, 0, x, &residual), QC_OK);
         assert_true(residual < 1e-15);
@@ -57,6 +56,12 @@ static void same_bytes_for_any_number_of_threads(void **state) {
         qc_ctx_free(ctx);
     }
     free(first);
+}
+
+static void same_bytes_for_any_number_of_threads(void **state) {
+    (void)state;
+    test_matrix M = big();
+    for (int set = 0; set < 3; set++) check_thread_counts(&M, instruction_sets[set]);
     free_matrix(&M);
 }
 
@@ -65,10 +70,11 @@ static void blas_setting_of_the_host_returns(void **state) {
     const int host = openblas_get_num_threads();
     openblas_set_num_threads(2);
     const int set = openblas_get_num_threads();
-    qc_ctx *ctx = new_ctx(2);
+    qc_ctx *ctx = new_ctx_with(2, "portable"); /* calls BLAS for wide fronts */
     test_matrix M = big();
     const qc_hermitian A = hermitian(&M);
     qc_factor *F = factor_of(ctx, &M, NULL);
+    assert_true(F->S->plan.largest_width >= F->kernels->blas_width);
     assert_int_equal(openblas_get_num_threads(), set);
     M.val[M.colptr[M.n] - 1].re = -1; /* the failing path as well */
     assert_int_equal(qc_refactorize(ctx, F, &A), QC_ERR_NOT_POSDEF);
