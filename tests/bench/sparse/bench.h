@@ -124,8 +124,8 @@ double bench_peak_memory(const bench_matrix *M, const bench_runner *r);
 typedef struct bench_limits {
     double fma, fma_avx2; /* flop/s of one core, widest instructions / AVX2; 0 = not there */
     double zgemm[3];      /* n = 8, 32, 128 */
-    double l2, memory,
-        memory2; /* bytes/s read and written in place: L2, memory by one, two cores */
+    double l2, l3, memory, memory2; /* bytes/s read and written in place; memory2: by two cores */
+    double l2_size, l3_size;        /* bytes, 0 = unknown */
 } bench_limits;
 extern const int32_t bench_zgemm_size[3];
 bench_limits bench_measure_limits(void);
@@ -164,17 +164,53 @@ void bench_print_comparison(const bench_comparison *c, int format);
 void bench_write_json(const char *path, const bench_limits *l, int32_t n,
                       const bench_comparison *c);
 
-/* --- compare.c -------------------------------------------------------------------------------- */
+/* --- compare.c, rows.c ------------------------------------------------------------------------ */
 
 enum { PART_ORDER = 1, PART_FACTOR = 2, PART_SOLVE = 4, PART_UPDATE = 8, PART_MEMORY = 16 };
 typedef struct bench_effort {
     unsigned parts; /* PART_... */
     int32_t repeat;
-    double seconds; /* per library and ordering */
-    bool same, own; /* which tables             */
+    double seconds;    /* per library and ordering                             */
+    bool same, own;    /* which tables                                         */
+    const char *peers; /* only those whose name is part of this; NULL = all    */
 } bench_effort;
+/* Fills the tables of *out. */
 void bench_compare(qc_ctx *ctx, const bench_matrix *M, const bench_limits *l,
                    const bench_effort *effort, bench_comparison *out);
+
+enum { OURS, OURS_2, PEERS }; /* positions among the runners; columns are those from PEERS on */
+typedef struct bench_lineup {
+    const bench_matrix *M;
+    const bench_limits *limits;
+    const bench_effort *effort;
+    bool own;              /* each with its own ordering */
+    bench_quality quality; /* of our ordering            */
+    int n;
+    bench_runner runner[PEERS + MOST_COLUMNS];
+    bench_table *table;
+} bench_lineup;
+/* What was measured becomes rows of L->table, with the figures to be reached. */
+void bench_memory_row(bench_lineup *L);
+void bench_analysis_rows(bench_lineup *L);
+void bench_factor_rows(bench_lineup *L);
+void bench_solve_rows(bench_lineup *L);
+void bench_update_rows(bench_lineup *L);
+/* Seconds, entries of L, operations, entries touched. */
+void bench_order_rows(bench_table *t, const char *const name[4], const double ours[4],
+                      const double metis[4], bool dissection);
+
+/* --- arguments.c ------------------------------------------------------------------------------ */
+
+typedef struct bench_arguments {
+    char *only, *part, *table, *peers, *json, *cache;
+    int repeat, flips, markdown, smoke;
+    double seconds;
+    const char **mesh; /* path[:levels] ..., NULL = the standard set */
+    void *storage;
+} bench_arguments;
+bench_arguments bench_parse(int argc, char **argv);
+void bench_arguments_clear(bench_arguments *a);
+bench_effort bench_arguments_effort(const bench_arguments *a);
 
 /* --- main.c ----------------------------------------------------------------------------------- */
 

@@ -145,16 +145,17 @@ static double stream_rate(const isa *k, int64_t n, int threads) {
 
 bench_limits bench_measure_limits(void) {
     const isa *k = widest();
-    const long l2 = sysconf(_SC_LEVEL2_CACHE_SIZE);
-    const int64_t half = (l2 > 0 ? l2 : 262144) / 2 / (int64_t)sizeof(double);
-    const int64_t large = 16000000; /* 128 MB, beyond the last cache */
+    const int64_t large = 16000000; /* doubles, beyond the last cache */
     bench_limits l = {0};
+    l.l2_size = (double)sysconf(_SC_LEVEL2_CACHE_SIZE);
+    l.l3_size = (double)sysconf(_SC_LEVEL3_CACHE_SIZE);
     l.fma = fma_peak(k);
 #ifdef X86
     if (k == &avx512) l.fma_avx2 = fma_peak(&avx2);
 #endif
     for (int i = 0; i < 3; i++) l.zgemm[i] = zgemm_peak(bench_zgemm_size[i]);
-    l.l2 = stream_rate(k, half, 1);
+    if (l.l2_size > 0) l.l2 = stream_rate(k, (int64_t)l.l2_size / 16, 1);
+    if (l.l3_size > 0) l.l3 = stream_rate(k, (int64_t)l.l3_size / 16, 1);
     l.memory = stream_rate(k, large, 1);
     l.memory2 = stream_rate(k, large, 2);
     return l;

@@ -91,14 +91,14 @@ void bench_print_comparison(const bench_comparison *c, int format) {
 }
 
 void bench_print_limits(const bench_limits *l, int format) {
-    printf(
-        format == FORMAT_MARKDOWN
-            ? "One core: %.1f Gflop/s of multiply-adds in registers (AVX2 alone %.1f); zgemm of "
-              "n = 8, 32, 128: %.1f, %.1f, %.1f Gflop/s; read and written in place: %.1f GB/s in "
-              "the second-level cache, %.1f from memory, %.1f by two cores together.\n"
-            : "limits: FMA %.1f (AVX2 %.1f), zgemm %.1f %.1f %.1f Gflop/s; L2 %.1f, memory "
-              "%.1f, two cores %.1f GB/s\n",
-        l->fma / 1e9, l->fma_avx2 / 1e9, l->zgemm[0] / 1e9, l->zgemm[1] / 1e9, l->zgemm[2] / 1e9,
-        l->l2 / 1e9, l->memory / 1e9, l->memory2 / 1e9);
+    printf(format == FORMAT_MARKDOWN
+               ? "One core: %.1f Gflop/s of multiply-adds in registers (AVX2 alone %.1f); zgemm of "
+                 "n = 8, 32, 128: %.1f, %.1f, %.1f Gflop/s; read and written in place: %.1f GB/s "
+                 "in the second-level cache, %.1f in the third, %.1f from memory, %.1f by two "
+                 "cores together.\n"
+               : "limits: FMA %.1f (AVX2 %.1f), zgemm %.1f %.1f %.1f Gflop/s; L2 %.1f, L3 %.1f, "
+                 "memory %.1f, two cores %.1f GB/s\n",
+           l->fma / 1e9, l->fma_avx2 / 1e9, l->zgemm[0] / 1e9, l->zgemm[1] / 1e9, l->zgemm[2] / 1e9,
+           l->l2 / 1e9, l->l3 / 1e9, l->memory / 1e9, l->memory2 / 1e9);
     fflush(stdout);
 }

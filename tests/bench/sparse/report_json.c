@@ -4,10 +4,10 @@
 #include <jansson.h>
 
 static json_t *limits_object(const bench_limits *l) {
-    return json_pack("{s:f,s:f,s:[f,f,f],s:f,s:f,s:f}", "fma_flops", l->fma, "fma_avx2_flops",
+    return json_pack("{s:f,s:f,s:[f,f,f],s:f,s:f,s:f,s:f}", "fma_flops", l->fma, "fma_avx2_flops",
                      l->fma_avx2, "zgemm_flops_8_32_128", l->zgemm[0], l->zgemm[1], l->zgemm[2],
-                     "l2_bytes", l->l2, "memory_bytes", l->memory, "memory_two_cores_bytes",
-                     l->memory2);
+                     "l2_bytes", l->l2, "l3_bytes", l->l3, "memory_bytes", l->memory,
+                     "memory_two_cores_bytes", l->memory2);
 }
 
 static json_t *row_object(const bench_table *t, const bench_row *r) {

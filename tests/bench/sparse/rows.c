@@ -1,0 +1,109 @@
+/* The rows of the tables and the figures to be reached. */
+#include "bench.h"
+
+/* The first column of that peer: with AMD, in the table of own orderings. */
+static void reach(const bench_lineup *L, bench_row *r, const bench_peer *p, double figure) {
+    for (int c = 0; c < L->table->columns; c++)
+        if (L->runner[PEERS + c].peer == p) {
+            r->reach[c] = figure;
+            return;
+        }
+}
+
+/* Seconds; on several threads only the wall clock tells, else the time of the thread does better.
+ */
+static double seconds(const bench_runner *r, int op, bool wall) {
+    return wall ? r->time[op].wall : r->time[op].cpu;
+}
+
+static bench_row *time_row(bench_lineup *L, const char *name, int who, unsigned ops) {
+    const bool wall = who == OURS_2;
+    bench_row *r = bench_add_row(L->table, name, "s", 0);
+    for (int op = 0; op < OP_COUNT; op++) {
+        if (!(ops >> op & 1)) continue;
+        r->ours += seconds(&L->runner[who], op, wall);
+        for (int c = 0; c < L->table->columns; c++)
+            r->peer[c] += seconds(&L->runner[PEERS + c], op, wall);
+    }
+    return r;
+}
+
+static void rate(bench_row *r, double amount, const char *unit, double limit) {
+    r->rate = r->ours > 0 ? amount / r->ours : 0;
+    r->rate_unit = unit;
+    r->percent = limit > 0 ? 100 * r->rate / limit : 0;
+}
+
+/* Of the level of the memory which holds so many bytes. */
+static double stream_limit(const bench_limits *l, double bytes) {
+    return bytes < l->l2_size ? l->l2 : bytes < l->l3_size ? l->l3 : l->memory;
+}
+
+static double factor_reach(int32_t faces) {
+    return faces < 200000 ? 6 : faces < 1000000 ? 4.5 : 2;
+}
+
+void bench_factor_rows(bench_lineup *L) {
+    const double flops = L->quality.flops, fma = L->limits->fma;
+    bench_row *r = time_row(L, "factorise, 1 thread", OURS, 1u << OP_FACTOR);
+    rate(r, flops, "flop/s", fma);
+    if (!L->own) reach(L, r, &peer_cholmod, factor_reach(L->M->faces));
+    rate(time_row(L, "factorise, 2 threads", OURS_2, 1u << OP_FACTOR), flops, "flop/s", 2 * fma);
+    rate(time_row(L, "factorise again, 1 thread", OURS, 1u << OP_REFACTOR), flops, "flop/s", fma);
+    rate(time_row(L, "factorise again, 2 threads", OURS_2, 1u << OP_REFACTOR), flops, "flop/s",
+         2 * fma);
+    bench_row *s = bench_add_row(L->table, "entries stored", "", L->runner[OURS].stored);
+    for (int c = 0; c < L->table->columns; c++) s->peer[c] = L->runner[PEERS + c].stored;
+}
+
+void bench_solve_rows(bench_lineup *L) {
+    const double bytes = 16 * L->quality.nnz, limit = stream_limit(L->limits, bytes);
+    bench_row *r = time_row(L, "forward solve", OURS, 1u << OP_FORWARD);
+    rate(r, bytes, "B/s", limit);
+    if (!L->own) {
+        reach(L, r, &peer_cholmod, 3);
+        reach(L, r, &peer_cxsparse, 2);
+    }
+    r = time_row(L, "full solve", OURS, 1u << OP_SOLVE);
+    rate(r, 2 * bytes, "B/s", limit);
+    r = time_row(L, "full solve, 16 right-hand sides", OURS, 1u << OP_SOLVE16);
+    rate(r, 16 * 16 * L->quality.nnz, "flop/s", L->limits->fma);
+    if (!L->own) reach(L, r, &peer_cholmod, 2);
+    time_row(L, "full solve, 16, 2 threads", OURS_2, 1u << OP_SOLVE16);
+}
+
+/* One read and one write of 16 bytes per entry. */
+void bench_update_rows(bench_lineup *L) {
+    const double entries = L->quality.touched;
+    bench_row *r = time_row(L, "update pair (one flip)", OURS, 1u << OP_FLIP);
+    rate(r, 32 * entries, "B/s", stream_limit(L->limits, 16 * entries));
+    reach(L, r, &peer_cxsparse, L->own ? 25 : 10);
+}
+
+void bench_memory_row(bench_lineup *L) {
+    bench_row *r = bench_add_row(L->table, "peak memory of analysis and factor", "B",
+                                 bench_peak_memory(L->M, &L->runner[OURS]));
+    for (int c = 0; c < L->table->columns; c++)
+        r->peer[c] = bench_peak_memory(L->M, &L->runner[PEERS + c]);
+    reach(L, r, &peer_cholmod, 1 / 0.7);
+}
+
+void bench_analysis_rows(bench_lineup *L) {
+    const unsigned both = 1u << OP_ANALYZE | 1u << OP_FACTOR;
+    const int32_t faces = L->M->faces;
+    time_row(L, "analyse, 1 thread", OURS, 1u << OP_ANALYZE);
+    time_row(L, "analyse and factorise, 1 thread", OURS, both);
+    bench_row *r = time_row(L, "analyse and factorise, 2 threads", OURS_2, both);
+    if (80000 < faces && faces < 100000) reach(L, r, &peer_cholmod, 5);
+}
+
+void bench_order_rows(bench_table *t, const char *const name[4], const double ours[4],
+                      const double metis[4], bool dissection) {
+    static const char *const unit[4] = {"s", "", "flop", ""};
+    for (int i = 0; i < 4; i++) {
+        bench_row *r = bench_add_row(t, name[i], unit[i], ours[i]);
+        r->peer[0] = metis[i];
+        if (dissection && i == 0) r->reach[0] = 2;
+        if (dissection && i == 3) r->reach[0] = 1 / 0.9;
+    }
+}
