@@ -4,7 +4,7 @@ MESH   ?=
 QUADS  ?= 5000
 JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: build setup demo check format check-format install clean
+.PHONY: build setup demo check bench format check-format install clean
 
 build: setup
 	cmake --preset release >/dev/null
@@ -29,6 +29,11 @@ check: build check-format
 	cmake --build build-tsan -j $(JOBS)
 	cd build-tsan && ctest -R '^unit/(base|sparse|pipeline|field)' -j $(JOBS) --output-on-failure
 	cd build && ctest -j $(JOBS) --output-on-failure
+
+# The sparse factorisation against its peers (docs/performance.md is rewritten). About ten minutes; needs the
+# meshes of QC_TEST_DATA and an otherwise idle machine.
+bench: build
+	sh tests/bench/sparse/page.sh build/bin/bench_sparse docs/performance.md --json build/bench_sparse.json
 
 # Formatting of all tracked sources by .clang-format.
 format check-format: setup
