@@ -7,8 +7,7 @@ shift 2
 tables=$(mktemp) result=$(mktemp)
 trap 'rm -f "$tables" "$result"' EXIT
 {
-    echo "Measured on $(sed -n 's/^model name[[:space:]]*: //p' /proc/cpuinfo | head -n 1)," \
-        "$(nproc) cores, $(date -u +%Y-%m-%d)."
+    echo "Measured on $(date -u +%Y-%m-%d) with $(nproc) cores."
     "$program" --markdown "$@" || echo FAILED
 } >"$tables"
 if grep -q '^FAILED$' "$tables"; then exit 1; fi
