@@ -110,6 +110,7 @@ typedef struct bench_plan {
     bool op[OP_COUNT];
     int32_t repeat;
     double seconds; /* a runner which has used up these gets no further turn */
+    double memory;  /* bytes, about what the largest factor takes            */
     bool keep;      /* all factors stay in memory between the rounds         */
 } bench_plan;
 /* Every round visits all runners in turn, so that a disturbance hits all of them alike. Checks

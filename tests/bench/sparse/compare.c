@@ -24,6 +24,7 @@ static void measure(bench_lineup *L) {
                                     [OP_FLIP] = parts & PART_UPDATE},
                              .repeat = L->effort->repeat,
                              .seconds = L->effort->seconds,
+                             .memory = 2.5 * 16 * L->quality.nnz,
                              .keep = L->quality.nnz < 25e6};
     if (parts & PART_MEMORY) bench_memory_row(L);
     if (!(parts & (PART_FACTOR | PART_SOLVE | PART_UPDATE))) return;
