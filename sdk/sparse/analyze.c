@@ -148,7 +148,7 @@ static qc_status map_entries(qc_ctx *ctx, qc__pattern A, qc_symbolic *S) {
     S->a_colptr = QC__NEW(ctx, int64_t, n + 1);
     S->a_row = QC__NEW(ctx, int32_t, nnz);
     S->entry = QC__ZERO(ctx, int64_t, ns + 1);
-    S->from = QC__NEW(ctx, uint32_t, nnz);
+    S->from = QC__ZERO(ctx, uint32_t, nnz + QC__AHEAD);
     S->to = QC__NEW(ctx, int32_t, nnz);
     if (!S->a_colptr || !S->a_row || !S->entry || !S->from || !S->to) return QC_ERR_NOMEM;
     memcpy(S->a_colptr, A.colptr, ((size_t)n + 1) * sizeof *A.colptr);

@@ -94,6 +94,9 @@ struct qc_factor {
     int64_t journal_used, journal_count; /* doubles, columns recorded                            */
 };
 
+/* Values of A are fetched this many entries before their use; `from` has as many more elements. */
+enum { QC__AHEAD = 24 };
+
 #define QC__EPS 2.220446049250313e-16
 
 /* A pivot below this is rounding error: in backward-stable elimination the error of D(j) is at most

@@ -18,10 +18,9 @@ static void load(const run *R, int32_t s, double *panel, double *floor) {
     const int64_t r = S->rowptr[s + 1] - S->rowptr[s], first = S->super[s];
     const int64_t w = S->super[s + 1] - first;
     memset(panel, 0, (size_t)(NC * r * w) * sizeof *panel);
-    const int64_t end = S->entry[s + 1], last = S->entry[S->nsuper] - 1;
+    const int64_t end = S->entry[s + 1];
     for (int64_t q = S->entry[s]; q < end; q++) {
-        const int64_t ahead = q + 24 < last ? q + 24 : last;
-        QC__PREFETCH(R->val + NC * (int64_t)S->from[ahead]);
+        QC__PREFETCH(R->val + NC * (int64_t)S->from[q + QC__AHEAD]);
         const bool conjugate = S->to[q] < 0;
         const double *a = R->val + NC * (int64_t)S->from[q];
         double *x = panel + NC * (conjugate ? ~S->to[q] : S->to[q]);

@@ -102,10 +102,10 @@ QC__INLINE void run_tile(const int vectors, const int columns, const bool full, 
     }
 TILE(1, 1)
 TILE(1, 2)
-TILE(1, 3) TILE(1, 4) TILE(2, 1) TILE(2, 2) TILE(2, 3) TILE(2, 4) TILE(3, 1) TILE(3, 2) TILE(3, 3)
-    TILE(3, 4)
+TILE(1, 3)
+TILE(1, 4) TILE(2, 1) TILE(2, 2) TILE(2, 3) TILE(2, 4) TILE(3, 1) TILE(3, 2) TILE(3, 3) TILE(3, 4)
 
-        typedef void tile_function(const tile_job *);
+    typedef void tile_function(const tile_job *);
 static tile_function *const products[3][4] = {{product_1_1, product_1_2, product_1_3, product_1_4},
                                               {product_2_1, product_2_2, product_2_3, product_2_4},
                                               {product_3_1, product_3_2, product_3_3, product_3_4}};
@@ -123,15 +123,21 @@ static void run_product(int64_t rows, int64_t columns, tile_job *job) {
         products[vectors - 1][columns - 1](job);
 }
 
-/* B(k,q) = d_k conj(L(j+q,k)) of the rows [j, j + rows) and the columns [k0, k1), padded to
- * TILE_COLUMNS rows. */
+/* B(k,q) = d_k conj(L(j+q,k)) of the rows [j, j + rows), rows <= TILE_COLUMNS, and the columns
+ * [k0, k1). Places beyond `rows` are zero. */
 static void pack_multipliers(const double *panel, int64_t r, int64_t j, int64_t rows, int64_t k0,
                              int64_t k1, const double *D, double *B) {
-    for (int64_t k = k0; k < k1; k++, B += NC * TILE_COLUMNS) {
-        const double *l = panel + NC * (j + k * r);
-        for (int64_t q = 0; q < rows; q++) {
-            B[NC * q] = D[k] * l[NC * q];
-            if (NC == 2) B[NC * q + NC - 1] = -D[k] * l[NC * q + NC - 1];
+    const double *l = panel + NC * (j + k0 * r);
+    for (int64_t k = k0; k < k1; k++, l += NC * r, B += NC * TILE_COLUMNS) {
+        const vec d = NC == 2 ? v_alternate(-D[k]) : v_set(D[k]);
+        for (int v = 0; v < NC * TILE_COLUMNS; v += LANES) {
+            const int64_t left = NC * rows - v;
+            if (NC * TILE_COLUMNS - v < LANES)
+                v_store_part(B + v, v_mul(v_load_part(l + v, left), d), NC * TILE_COLUMNS - v);
+            else if (left >= LANES)
+                v_store(B + v, v_mul(v_load(l + v), d));
+            else
+                v_store(B + v, v_mul(v_load_part(l + v, left > 0 ? left : 0), d));
         }
     }
 }

@@ -91,6 +91,30 @@ static void factor_survives_failing_allocations(void **state) {
     fail_every_allocation(run_complex);
 }
 
+static void second_refactorisation_allocates_nothing(void **state) {
+    (void)state;
+    test_matrix M = make_matrix(GRID, 2500, 0.5);
+    counter c = {0, -1, 0};
+    qc_ctx_options options = QC_CTX_OPTIONS_INIT;
+    options.resize = counting_resize;
+    options.user = &c;
+    options.threads = 2;
+    qc_ctx *ctx = NULL;
+    assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
+    const qc_hermitian A = hermitian(&M);
+    qc_factor *F = factor_of(ctx, &M, NULL);
+    assert_int_equal(qc_refactorize(ctx, F, &A), QC_OK);
+    const uint64_t first = fingerprint(F);
+    const int64_t calls = c.calls;
+    assert_int_equal(qc_refactorize(ctx, F, &A), QC_OK);
+    assert_int_equal(c.calls, calls);
+    assert_true(first == fingerprint(F));
+    qc_factor_free(F);
+    qc_ctx_free(ctx);
+    assert_int_equal(c.live, 0);
+    free_matrix(&M);
+}
+
 static void lattice_survives_failing_allocations(void **state) {
     (void)state;
     fail_every_allocation(run_lattice);
@@ -99,6 +123,7 @@ static void lattice_survives_failing_allocations(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(factor_survives_failing_allocations),
+        cmocka_unit_test(second_refactorisation_allocates_nothing),
         cmocka_unit_test(lattice_survives_failing_allocations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
