@@ -1,14 +1,15 @@
 /* A fork-join loop over fixed chunks. Workers sleep between loops; chunks are handed out by one
- * atomic counter, so which thread runs a chunk varies but the chunks themselves never do. */
+ * atomic counter, so which thread runs a chunk varies but the chunks themselves never do. The caller
+ * waits only for workers which joined: one that wakes up late finds the loop closed. */
 #include "sdk/base/context_private.h"
 #include <pthread.h>
 
 struct qc__pool {
     pthread_mutex_t lock;
     pthread_cond_t work, done;
-    uint32_t n_workers, running;
+    uint32_t n_workers, joined;
     uint64_t generation;
-    bool quit, busy;
+    bool quit, busy, open; /* open: workers may still join the present loop */
 
     qc__body *body;
     void *arg;
@@ -36,13 +37,15 @@ static void *worker_main(void *arg) {
     uint64_t seen = 0;
     pthread_mutex_lock(&pool->lock);
     for (;;) {
-        while (!pool->quit && pool->generation == seen) pthread_cond_wait(&pool->work, &pool->lock);
+        while (!pool->quit && (!pool->open || pool->generation == seen))
+            pthread_cond_wait(&pool->work, &pool->lock);
         if (pool->quit) break;
         seen = pool->generation;
+        pool->joined++;
         pthread_mutex_unlock(&pool->lock);
         run_chunks(pool, self->index);
         pthread_mutex_lock(&pool->lock);
-        if (--pool->running == 0) pthread_cond_signal(&pool->done);
+        if (--pool->joined == 0) pthread_cond_signal(&pool->done);
     }
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -114,7 +117,7 @@ void qc__parallel_for(qc_ctx *ctx, int64_t n, int64_t chunk, qc__body *body, voi
     pool->n = n;
     pool->chunk = chunk;
     atomic_store(&pool->next, 0);
-    pool->running = pool->n_workers;
+    pool->open = true;
     pool->generation++;
     pthread_cond_broadcast(&pool->work);
     pthread_mutex_unlock(&pool->lock);
@@ -122,7 +125,8 @@ void qc__parallel_for(qc_ctx *ctx, int64_t n, int64_t chunk, qc__body *body, voi
     run_chunks(pool, 0);
 
     pthread_mutex_lock(&pool->lock);
-    while (pool->running != 0) pthread_cond_wait(&pool->done, &pool->lock);
+    pool->open = false;
+    while (pool->joined != 0) pthread_cond_wait(&pool->done, &pool->lock);
     pool->busy = false;
     pthread_mutex_unlock(&pool->lock);
 }
