@@ -29,6 +29,7 @@ static void subtract_tiles(void *arg, int64_t begin, int64_t end, uint32_t worke
 static int32_t own_factor(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *f) {
     for (int32_t k0 = 0; k0 < f->w; k0 += QC__FRONT_BLOCK) {
         const int32_t k1 = k0 + QC__FRONT_BLOCK < f->w ? k0 + QC__FRONT_BLOCK : f->w;
+        if (ctx && !qc__progress(ctx, (double)k0 / f->w)) return QC__CANCELLED;
         const int32_t bad =
             kernels->front_factor_block(f->r, k0, k1, f->panel, f->D, f->floor, f->work);
         if (bad >= 0) return bad;
@@ -41,7 +42,7 @@ static int32_t own_factor(qc_ctx *ctx, const qc__kernels *kernels, const qc__fro
         else
             subtract_tiles(&b, 0, tiles, 0);
     }
-    return -1;
+    return QC__DONE;
 }
 
 /* U <- beta U - B B^H, B: m x w */
@@ -87,7 +88,7 @@ static int32_t blas_factor(const qc__front *f) {
         l[NC * k] = 1;
         if (NC == 2) l[NC * k + 1] = 0;
     }
-    return -1;
+    return QC__DONE;
 }
 
 int32_t NAME(qc__front_factor)(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *f) {

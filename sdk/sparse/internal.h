@@ -155,8 +155,9 @@ typedef struct qc__front {
     double *work;        /* qc__front_work doubles */
 } qc__front;
 int64_t qc__front_work(int32_t r, int32_t w);
-/* ctx: of the calling thread when its pool may help, else NULL. Returns -1, or the local column
- * whose pivot is not above its floor. */
+/* ctx: of the calling thread when its pool may help and progress is wanted, else NULL. Returns the
+ * local column whose pivot is not above its floor, or QC__DONE, or QC__CANCELLED. */
+enum { QC__DONE = -1, QC__CANCELLED = -2 };
 int32_t qc__front_factor(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *front);
 int32_t qc__front_factor_real(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *front);
 

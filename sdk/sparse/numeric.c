@@ -48,7 +48,8 @@ static double *update_of(const run *R, int32_t s, uint32_t worker) {
     return (plan->shared[s] ? R->space->area : R->space->stack[worker]) + NC * plan->update[s];
 }
 
-/* ctx: see qc__front_factor. Returns the permuted column of a failed pivot, or -1. */
+/* ctx: see qc__front_factor. Returns the permuted column of a failed pivot, QC__DONE or
+ * QC__CANCELLED. */
 static int32_t factor_supernode(const run *R, qc_ctx *ctx, int32_t s, uint32_t worker) {
     const qc_symbolic *S = R->S;
     const int32_t first = S->super[s], w = S->super[s + 1] - first;
@@ -66,14 +67,14 @@ static int32_t factor_supernode(const run *R, qc_ctx *ctx, int32_t s, uint32_t w
     for (int32_t c = S->child[s]; c != -1; c = S->sibling[c])
         extend_add(R, c, update_of(R, c, worker), &front);
     const int32_t bad = NAME(qc__front_factor)(ctx, R->F->kernels, &front);
-    return bad < 0 ? -1 : first + bad;
+    return bad < 0 ? bad : first + bad;
 }
 
 static void run_tasks(void *arg, int64_t begin, int64_t end, uint32_t worker) {
     const run *R = arg;
     for (int64_t t = R->task + begin; t < R->task + end; t++) {
         const qc__task task = R->S->plan.task[t];
-        R->space->failed[t] = -1;
+        R->space->failed[t] = QC__DONE;
         for (int32_t s = task.first; s <= task.last && R->space->failed[t] < 0; s++)
             R->space->failed[t] = factor_supernode(R, NULL, s, worker);
     }
@@ -97,9 +98,12 @@ static qc_status run_step(qc_ctx *ctx, run *R, const qc__step *step, double done
     for (int32_t t = step->task; t < step->task_end; t++)
         if (R->space->failed[t] >= 0) return not_posdef(ctx, R->S, R->space->failed[t]);
     for (int32_t k = 0; k < tops; k++) {
-        const double fraction = (done + step->flops * k / tops) / plan->flops;
-        if (!qc__progress(ctx, fraction)) return QC_ERR_CANCELLED;
+        const double begin = done + step->flops * k / tops,
+                     end = done + step->flops * (k + 1) / tops;
+        const qc__range outer = qc__range_begin(ctx, NULL, begin / plan->flops, end / plan->flops);
         const int32_t bad = factor_supernode(R, ctx, plan->top[step->top + k], 0);
+        qc__range_end(ctx, outer);
+        if (bad == QC__CANCELLED) return QC_ERR_CANCELLED;
         if (bad >= 0) return not_posdef(ctx, R->S, bad);
     }
     return QC_OK;
