@@ -36,7 +36,14 @@ typedef struct qc_symmetric {
 typedef struct qc_symbolic qc_symbolic; /* permutation, elimination tree, supernodes; immutable */
 typedef struct qc_factor qc_factor; /* numeric factor; the one mutable object of the SDK         */
 
-enum { QC_ORDER_AMD = 0, QC_ORDER_NATURAL = 1, QC_ORDER_GIVEN = 2 };
+enum {
+    QC_ORDER_AUTO = 0,
+    QC_ORDER_NATURAL = 1,
+    QC_ORDER_GIVEN = 2,
+    QC_ORDER_AMD = 3,       /* approximate minimum degree */
+    QC_ORDER_DISSECTION = 5 /* nested dissection, minimum degree in small pieces: less fill and much
+                               shorter updates on meshes from some thousand rows on */
+};
 
 typedef struct qc_analyze_options {
     uint32_t struct_size;
