@@ -47,7 +47,10 @@ int main(int argc, char **argv) {
     if (argc < 2) return cli_error(EXIT_USAGE, "no command given; see quadcover --help");
     const char *name = argv[1];
     if (strcmp(name, "--version") == 0) {
-        printf("quadcover %s\n", qc_version());
+        qc_ctx *ctx = NULL;
+        if (qc_ctx_create(NULL, &ctx) != QC_OK) return EXIT_FAILED;
+        printf("quadcover %s\nvector instructions: %s\n", qc_version(), qc_ctx_instructions(ctx));
+        qc_ctx_free(ctx);
         return EXIT_DONE;
     }
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {

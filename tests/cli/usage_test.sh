@@ -3,6 +3,7 @@
 
 run 0 --version
 out_says '^quadcover [0-9]*\.[0-9]*\.[0-9]*$'
+out_says '^vector instructions: '
 run 0 --help
 out_says remesh extract field check stages shape batch
 for command in remesh extract field check stages shape; do
