@@ -64,6 +64,10 @@ typedef struct bench_peer {
     void (*forward)(void *self, qc_complex *x); /* |x|^2 becomes b^H A^{-1} b */
     void (*solve)(void *self, int32_t nrhs, qc_complex *x);
     void (*flip)(void *self, const bench_flip *f, int direction); /* +1 applies, -1 undoes */
+    void (*undo)(void *self); /* takes the last flip back from records, without computing */
+    /* From now on flips keep the forward solution of b, and energy tells |y|^2; b NULL ends it. */
+    void (*carry)(void *self, const qc_complex *b);
+    double (*energy)(void *self);
     double (*stored)(void *self); /* entries of the factor, with explicit zeros */
     void (*drop)(void *self);     /* the factor, not the analysis */
     void (*destroy)(void *self);
@@ -77,9 +81,20 @@ extern const bench_peer peer_mumps;
 void order_quadcover(const bench_matrix *M, int ordering, int32_t *perm);
 void order_metis(const bench_matrix *M, int32_t *perm);
 
-/* --- measure.c: clocks and interleaving ------------------------------------------------------- */
+/* --- clock.c, measure.c: clocks and interleaving ---------------------------------------------- */
 
-enum { OP_ANALYZE, OP_FACTOR, OP_REFACTOR, OP_FORWARD, OP_SOLVE, OP_SOLVE16, OP_FLIP, OP_COUNT };
+enum {
+    OP_ANALYZE,
+    OP_FACTOR,
+    OP_REFACTOR,
+    OP_FORWARD,
+    OP_SOLVE,
+    OP_SOLVE16,
+    OP_FLIP,
+    OP_UNDO,
+    OP_CARRY,
+    OP_COUNT
+};
 
 /* Seconds; cpu is that of the calling thread. */
 typedef struct bench_duration {
@@ -90,7 +105,8 @@ typedef struct bench_samples {
     bench_duration *value;
 } bench_samples;
 bench_duration bench_clock(void);
-void bench_sample(bench_samples *s, bench_duration begin, bench_duration end);
+double bench_wall(void); /* quick to read */
+void bench_sample(bench_samples *s, bench_duration d);
 bench_duration bench_median(const bench_samples *s);
 
 typedef struct bench_runner {
@@ -140,6 +156,8 @@ typedef struct bench_row {
     const char *name, *unit;
     double ours, peer[MOST_COLUMNS]; /* 0 = not measured                */
     double reach[MOST_COLUMNS];      /* what peer / ours is to be, 0 = no such figure */
+    const char *other;               /* another way of ours, NULL = none                    */
+    double other_value, other_reach; /* other_value / ours is to be so much */
     double rate, percent;            /* of work or traffic, and that of the limit; 0 = none */
     const char *rate_unit;
 } bench_row;

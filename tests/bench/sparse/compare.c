@@ -18,10 +18,12 @@ static void measure(bench_lineup *L) {
     const bench_plan plan = {.op = {[OP_ANALYZE] = parts & PART_FACTOR && L->own,
                                     [OP_FACTOR] = parts & PART_FACTOR,
                                     [OP_REFACTOR] = parts & PART_FACTOR,
-                                    [OP_FORWARD] = parts & PART_SOLVE,
+                                    [OP_FORWARD] = parts & (PART_SOLVE | PART_UPDATE),
                                     [OP_SOLVE] = parts & PART_SOLVE,
                                     [OP_SOLVE16] = parts & PART_SOLVE,
-                                    [OP_FLIP] = parts & PART_UPDATE},
+                                    [OP_FLIP] = parts & PART_UPDATE,
+                                    [OP_UNDO] = parts & PART_UPDATE,
+                                    [OP_CARRY] = parts & PART_UPDATE},
                              .repeat = L->effort->repeat,
                              .seconds = L->effort->seconds,
                              .memory = 2.5 * 16 * L->quality.nnz,
@@ -47,7 +49,8 @@ static void order_against_metis(qc_ctx *ctx, const bench_matrix *M, int which,
         for (int metis = 0; metis < 2; metis++) {
             const bench_duration begin = bench_clock();
             metis ? order_metis(M, perm) : order_quadcover(M, which, perm);
-            bench_sample(&s[metis], begin, bench_clock());
+            const bench_duration end = bench_clock();
+            bench_sample(&s[metis], (bench_duration){end.wall - begin.wall, end.cpu - begin.cpu});
             if (i == 0) q[metis] = bench_order_quality(ctx, M, perm);
         }
     for (int metis = 0; metis < 2; metis++) {

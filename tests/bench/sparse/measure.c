@@ -1,61 +1,14 @@
-/* Clocks, medians, and rounds in which all runners take their turn. Short operations are repeated
+/* Rounds in which all runners take their turn. Short operations are repeated
  * within a turn. The first turn warms up and checks the solutions; it counts only where there is no
  * time for another one. */
 #include "bench.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static const double short_turn = 4e-3; /* seconds in which an operation is repeated */
 enum { MOST_REPEATS = 5, MANY = 16 };
-
-static double read_clock(clockid_t id) {
-    struct timespec t;
-    clock_gettime(id, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-bench_duration bench_clock(void) {
-    return (bench_duration){read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_THREAD_CPUTIME_ID)};
-}
-
-static void add_sample(bench_samples *s, bench_duration d) {
-    if (s->n == s->capacity) {
-        s->capacity = 2 * s->capacity + 8;
-        s->value = realloc(s->value, (size_t)s->capacity * sizeof *s->value);
-        if (!s->value) bench_die("no memory");
-    }
-    s->value[s->n++] = d;
-}
-
-void bench_sample(bench_samples *s, bench_duration begin, bench_duration end) {
-    add_sample(s, (bench_duration){end.wall - begin.wall, end.cpu - begin.cpu});
-}
-
-static int compare_doubles(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(int32_t n, double *x) {
-    qsort(x, (size_t)n, sizeof *x, compare_doubles);
-    return n ? 0.5 * (x[(n - 1) / 2] + x[n / 2]) : 0;
-}
-
-bench_duration bench_median(const bench_samples *s) {
-    double *wall = NEW(double, s->n), *cpu = NEW(double, s->n);
-    for (int32_t i = 0; i < s->n; i++) {
-        wall[i] = s->value[i].wall;
-        cpu[i] = s->value[i].cpu;
-    }
-    const bench_duration d = {median(s->n, wall), median(s->n, cpu)};
-    free(wall);
-    free(cpu);
-    return d;
-}
 
 /* The work of one turn: right-hand sides and their copies. */
 typedef struct desk {
@@ -91,28 +44,50 @@ static void run(const desk *d, bench_runner *r, int op) {
     case OP_SOLVE16:
         p->solve(r->self, MANY, d->x);
         break;
-    default: /* OP_FLIP: applied and undone in turn */
-        for (int32_t i = 0; i < d->M->n_flips; i++) {
-            p->flip(r->self, &d->M->flips[i], 1);
-            p->flip(r->self, &d->M->flips[i], -1);
+    default: /* OP_FLIP, OP_CARRY: applied and undone in turn */
+        for (int32_t i = 0; i < 2 * d->M->n_flips; i++) {
+            p->flip(r->self, &d->M->flips[i / 2], i % 2 ? -1 : 1);
+            if (op == OP_CARRY) p->energy(r->self);
         }
     }
 }
 
+/* Only the undoing counts. The clock of the thread is too slow for that: the other one stands in.
+ */
+static bench_duration time_undo(const desk *d, bench_runner *r) {
+    double sum = 0;
+    for (int32_t i = 0; i < d->M->n_flips; i++) {
+        r->peer->flip(r->self, &d->M->flips[i], 1);
+        const double begin = bench_wall();
+        r->peer->undo(r->self);
+        sum += bench_wall() - begin;
+    }
+    return (bench_duration){sum, sum};
+}
+
+static bench_duration time_once(const desk *d, bench_runner *r, int op) {
+    if (op == OP_UNDO) return time_undo(d, r);
+    if (op == OP_CARRY) r->peer->carry(r->self, d->b);
+    const bench_duration begin = bench_clock();
+    run(d, r, op);
+    const bench_duration end = bench_clock();
+    if (op == OP_CARRY) r->peer->carry(r->self, NULL);
+    return (bench_duration){end.wall - begin.wall, end.cpu - begin.cpu};
+}
+
 static bool offers(const bench_peer *p, int op) {
     return !((op == OP_REFACTOR && !p->refactor) || (op == OP_FORWARD && !p->forward) ||
-             (op == OP_FLIP && !p->flip));
+             (op == OP_FLIP && !p->flip) || (op == OP_UNDO && !p->undo) ||
+             (op == OP_CARRY && !p->carry));
 }
 
 static void time_operation(const desk *d, bench_runner *r, int op) {
     double spent = 0;
     for (int i = 0; i < MOST_REPEATS && spent < short_turn; i++) {
         prepare(d, r, op);
-        const bench_duration begin = bench_clock();
-        run(d, r, op);
-        const bench_duration end = bench_clock();
-        bench_sample(&r->samples[op], begin, end);
-        spent += end.wall - begin.wall;
+        const bench_duration t = time_once(d, r, op);
+        bench_sample(&r->samples[op], t);
+        spent += t.wall;
     }
 }
 
@@ -121,30 +96,53 @@ static void demand(const bench_runner *r, const char *what, double error) {
         bench_die("%s: %s has a relative error of %.1e: another problem", r->label, what, error);
 }
 
-/* Residual of a solution before and after a flip, and |y|^2 = b^H A^{-1} b. */
+/* Re b^H x. */
+static double inner_product(int32_t n, const qc_complex *b, const qc_complex *x) {
+    double sum = 0;
+    for (int32_t i = 0; i < n; i++) sum += b[i].re * x[i].re + b[i].im * x[i].im;
+    return sum;
+}
+
+/* Residual of a solution, and |y|^2 = b^H A^{-1} b. */
 static void check(const desk *d, bench_runner *r) {
     const int32_t n = d->M->A.n;
     const size_t size = (size_t)n * sizeof *d->b;
-    double product = 0, norm = 0;
     memcpy(d->x, d->b, size);
     r->peer->solve(r->self, 1, d->x);
     r->residual = bench_residual(d->M, NULL, d->b, d->x);
     demand(r, "the solution", r->residual);
-    for (int32_t i = 0; i < n; i++) product += d->b[i].re * d->x[i].re + d->b[i].im * d->x[i].im;
+    const double product = inner_product(n, d->b, d->x);
     if (r->peer->forward) {
         memcpy(d->x, d->b, size);
         r->peer->forward(r->self, d->x);
-        for (int32_t i = 0; i < n; i++) norm += d->x[i].re * d->x[i].re + d->x[i].im * d->x[i].im;
-        demand(r, "the forward solution", fabs(norm - product) / product);
+        demand(r, "the forward solution", fabs(inner_product(n, d->x, d->x) - product) / product);
     }
-    if (r->peer->flip && d->M->n_flips) {
-        const bench_flip *f = &d->M->flips[0];
-        memcpy(d->x, d->b, size);
-        r->peer->flip(r->self, f, 1);
-        r->peer->solve(r->self, 1, d->x);
-        demand(r, "the solution after a flip", bench_residual(d->M, f, d->b, d->x));
-        r->peer->flip(r->self, f, -1);
+}
+
+/* The same for the matrix with one flip, and the way back. */
+static void check_flip(const desk *d, bench_runner *r) {
+    const bench_peer *p = r->peer;
+    const bench_flip *f = &d->M->flips[0];
+    const size_t size = (size_t)d->M->A.n * sizeof *d->b;
+    if (p->carry) p->carry(r->self, d->b);
+    p->flip(r->self, f, 1);
+    const double energy = p->carry ? p->energy(r->self) : 0;
+    memcpy(d->x, d->b, size);
+    p->solve(r->self, 1, d->x);
+    demand(r, "the solution after a flip", bench_residual(d->M, f, d->b, d->x));
+    const double product = inner_product(d->M->A.n, d->b, d->x);
+    if (p->carry) {
+        demand(r, "the forward solution after a flip", fabs(energy - product) / product);
+        p->carry(r->self, NULL);
     }
+    p->flip(r->self, f, -1);
+    if (p->undo) {
+        p->flip(r->self, f, 1);
+        p->undo(r->self);
+    }
+    memcpy(d->x, d->b, size);
+    p->solve(r->self, 1, d->x);
+    demand(r, "the solution after undoing a flip", bench_residual(d->M, NULL, d->b, d->x));
 }
 
 static void take_turn(const desk *d, bench_runner *r, const bench_plan *plan, bool first) {
@@ -160,6 +158,7 @@ static void take_turn(const desk *d, bench_runner *r, const bench_plan *plan, bo
     else if (!has_factor)
         r->peer->factor(r->self);
     if (first) check(d, r);
+    if (first && r->peer->flip && d->M->n_flips) check_flip(d, r);
     for (int op = OP_REFACTOR; op < OP_COUNT; op++)
         if (plan->op[op] && offers(r->peer, op)) time_operation(d, r, op);
     if (!plan->keep) r->peer->drop(r->self);
@@ -177,8 +176,11 @@ static void touch_memory(double bytes) {
 static void finish(const bench_matrix *M, bench_runner *r) {
     for (int op = 0; op < OP_COUNT; op++) r->time[op] = bench_median(&r->samples[op]);
     if (!r->peer->refactor) r->time[OP_REFACTOR] = r->time[OP_FACTOR];
-    r->time[OP_FLIP].wall /= 2 * M->n_flips;
-    r->time[OP_FLIP].cpu /= 2 * M->n_flips;
+    for (int op = OP_FLIP; op < OP_COUNT; op++) {
+        const int32_t count = op == OP_UNDO ? M->n_flips : 2 * M->n_flips;
+        r->time[op].wall /= count;
+        r->time[op].cpu /= count;
+    }
     r->stored = r->peer->stored(r->self);
 }
 
@@ -196,9 +198,9 @@ void bench_measure(const bench_matrix *M, int32_t n, bench_runner *runners,
             if (first) r->self = r->peer->create(M, r->ordering, r->perm, r->threads);
             for (int op = 0; op < OP_COUNT && round == 1; op++) r->samples[op].n = 0;
             if (first || !plan->keep) touch_memory(plan->memory);
-            const double begin = bench_clock().wall;
+            const double begin = bench_wall();
             take_turn(&d, r, plan, first);
-            spent[i] += bench_clock().wall - begin;
+            spent[i] += bench_wall() - begin;
         }
     for (int32_t i = 0; i < n; i++) finish(M, &runners[i]);
     free(d.b);

@@ -127,8 +127,8 @@ static void destroy(void *self) {
     free(s);
 }
 
-const bench_peer peer_cholmod = {"CHOLMOD", create, analyze, factor, refactor, forward,
-                                 solve,     NULL,   stored,  drop,   destroy};
+const bench_peer peer_cholmod = {"CHOLMOD", create, analyze, factor, refactor, forward, solve,
+                                 NULL,      NULL,   NULL,    NULL,   stored,   drop,    destroy};
 
 void order_metis(const bench_matrix *M, int32_t *perm) {
     state s = {0};

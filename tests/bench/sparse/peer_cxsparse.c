@@ -115,5 +115,5 @@ static void destroy(void *self) {
     free(s);
 }
 
-const bench_peer peer_cxsparse = {"CXSparse", create,     analyze, factor, NULL,   forward,
-                                  solve,      apply_flip, stored,  drop,   destroy};
+const bench_peer peer_cxsparse = {"CXSparse", create, analyze, factor, NULL,   forward, solve,
+                                  apply_flip, NULL,   NULL,    NULL,   stored, drop,    destroy};

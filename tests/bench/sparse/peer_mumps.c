@@ -100,5 +100,5 @@ static void destroy(void *self) {
     free(s);
 }
 
-const bench_peer peer_mumps = {"MUMPS", create, analyze, factor, NULL,   NULL,
-                               solve,   NULL,   stored,  drop,   destroy};
+const bench_peer peer_mumps = {"MUMPS", create, analyze, factor, NULL,   NULL, solve,
+                               NULL,    NULL,   NULL,    NULL,   stored, drop, destroy};

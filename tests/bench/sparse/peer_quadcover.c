@@ -85,8 +85,9 @@ static void destroy(void *self) {
     free(s);
 }
 
-const bench_peer peer_quadcover = {"QuadCover", create,     analyze, factor, refactor, forward,
-                                   solve,       apply_flip, stored,  drop,   destroy};
+const bench_peer peer_quadcover = {"QuadCover", create, analyze,    factor, refactor,
+                                   forward,     solve,  apply_flip, NULL,   NULL,
+                                   NULL,        stored, drop,       destroy};
 
 void order_quadcover(const bench_matrix *M, int ordering, int32_t *perm) {
     const qc_analyze_options options = ordering_options(ordering, NULL);

@@ -35,6 +35,9 @@ static void print_reach(char *out, size_t size, const bench_table *t, const benc
         used += (size_t)snprintf(out + used, size - used, "%s%.3g %s", used ? "; " : "",
                                  r->reach[c], reached ? "yes" : "NO");
     }
+    if (r->other)
+        snprintf(out, size, "%s %.3g: %.3g %s", r->other, r->other_value / r->ours, r->other_reach,
+                 r->other_value / r->ours >= r->other_reach ? "yes" : "NO");
 }
 
 static void print_cell(const char *text, int width, int format) {

@@ -19,8 +19,15 @@ static json_t *row_object(const bench_table *t, const bench_row *r) {
         if (r->reach[c] > 0) json_object_set_new(peer, "reach", json_real(r->reach[c]));
         json_object_set_new(peers, t->column[c], peer);
     }
-    return json_pack("{s:s,s:s,s:f,s:o,s:f,s:f}", "name", r->name, "unit", r->unit, "ours", r->ours,
-                     "peers", peers, "rate", r->rate, "percent_of_limit", r->percent);
+    json_t *object =
+        json_pack("{s:s,s:s,s:f,s:o,s:f,s:f}", "name", r->name, "unit", r->unit, "ours", r->ours,
+                  "peers", peers, "rate", r->rate, "percent_of_limit", r->percent);
+    if (r->other) {
+        json_t *other = json_pack("{s:f,s:f,s:f}", "value", r->other_value, "ratio",
+                                  r->other_value / r->ours, "reach", r->other_reach);
+        json_object_set_new(object, r->other, other);
+    }
+    return object;
 }
 
 static json_t *comparison_object(const bench_comparison *c) {

@@ -72,12 +72,39 @@ void bench_solve_rows(bench_lineup *L) {
     time_row(L, "full solve, 16, 2 threads", OURS_2, 1u << OP_SOLVE16);
 }
 
+/* A flip needs its forward solution as well: for the peers that is a whole forward solve. */
+static void carry_rows(bench_lineup *L) {
+    const bench_runner *ours = &L->runner[OURS];
+    const double total = seconds(ours, OP_CARRY, false), flip = seconds(ours, OP_FLIP, false);
+    if (total <= 0) return;
+    bench_row *r = bench_add_row(L->table, "flip and its forward solution", "s", total);
+    bench_row *f = bench_add_row(L->table, "of this, the forward solution", "s", total - flip);
+    for (int c = 0; c < L->table->columns; c++) {
+        const bench_runner *peer = &L->runner[PEERS + c];
+        f->peer[c] = seconds(peer, OP_FORWARD, false);
+        if (seconds(peer, OP_FLIP, false) > 0)
+            r->peer[c] = seconds(peer, OP_FLIP, false) + f->peer[c];
+    }
+    if (!L->own) reach(L, f, &peer_cxsparse, 80);
+}
+
 /* One read and one write of 16 bytes per entry. */
 void bench_update_rows(bench_lineup *L) {
     const double entries = L->quality.touched;
     bench_row *r = time_row(L, "update pair (one flip)", OURS, 1u << OP_FLIP);
     rate(r, 32 * entries, "B/s", stream_limit(L->limits, 16 * entries));
     reach(L, r, &peer_cxsparse, L->own ? 25 : 10);
+    time_row(L, "update pair, 2 threads", OURS_2, 1u << OP_FLIP);
+    const double undo = seconds(&L->runner[OURS], OP_UNDO, false), flip = r->ours;
+    if (undo > 0) {
+        r = bench_add_row(L->table, "flip taken back", "s", undo);
+        for (int c = 0; c < L->table->columns; c++)
+            r->peer[c] = seconds(&L->runner[PEERS + c], OP_FLIP, false);
+        r->other = "own update";
+        r->other_value = flip;
+        r->other_reach = 3;
+    }
+    carry_rows(L);
 }
 
 void bench_memory_row(bench_lineup *L) {
