@@ -4,7 +4,7 @@
 set -eu
 
 packages="gcc g++ make cmake ninja-build pkg-config libopenblas-dev liblapacke-dev libsuitesparse-dev
-libjansson-dev libpopt-dev libcmocka-dev clang libclang-rt-14-dev clang-format libmumps-dev openmpi-bin"
+libjansson-dev libpopt-dev libcmocka-dev clang libclang-rt-14-dev clang-format libmumps-dev libmumps-seq-dev openmpi-bin"
 
 command -v dpkg-query >/dev/null 2>&1 || {
     echo "setup-debian: not a Debian system; install by hand: $packages" >&2

@@ -149,7 +149,7 @@ bench_limits bench_measure_limits(void);
 
 /* --- report.c, report_json.c ------------------------------------------------------------------ */
 
-enum { MOST_COLUMNS = 6, MOST_ROWS = 24 };
+enum { MOST_COLUMNS = 6, MOST_ROWS = 32 };
 
 /* One comparison. Printed as peer / ours: above 1 ours is better. */
 typedef struct bench_row {

@@ -7,7 +7,9 @@
 
 static void add_runner(bench_lineup *L, const char *label, const bench_peer *p, int ordering,
                        const int32_t *perm, uint32_t threads) {
-    if (L->n >= PEERS && L->effort->peers && !strstr(L->effort->peers, p->name)) return;
+    if (L->n >= PEERS && L->effort->peers && p != &peer_quadcover &&
+        !strstr(L->effort->peers, p->name))
+        return;
     L->runner[L->n++] = (bench_runner){
         .label = label, .peer = p, .ordering = ordering, .perm = perm, .threads = threads};
     if (L->n > PEERS) L->table->column[L->table->columns++] = label;
@@ -67,10 +69,14 @@ static void order_against_metis(qc_ctx *ctx, const bench_matrix *M, int which,
 static void compare_orderings(qc_ctx *ctx, const bench_matrix *M, bench_table *t) {
     static const char *const amd[4] = {"AMD: time", "AMD: entries of L", "AMD: operations",
                                        "AMD: entries touched by a flip"};
+    static const char *const dissection[4] = {"dissection: time", "dissection: entries of L",
+                                              "dissection: operations",
+                                              "dissection: entries touched by a flip"};
     t->title = "Orderings";
     t->columns = 1;
     t->column[0] = "METIS";
     order_against_metis(ctx, M, ORDER_AMD, amd, t);
+    order_against_metis(ctx, M, ORDER_DISSECTION, dissection, t);
 }
 
 static void finish(bench_lineup *L, bench_comparison *out) {
@@ -83,22 +89,22 @@ static void finish(bench_lineup *L, bench_comparison *out) {
 
 /* perm: the ordering for all, or NULL = each its own. */
 static void line_up(bench_lineup *L, const int32_t *perm) {
-    const int amd = perm ? ORDER_GIVEN : ORDER_AMD;
-    add_runner(L, "ours", &peer_quadcover, amd, perm, 1);
-    add_runner(L, "ours, 2 threads", &peer_quadcover, amd, perm, 2);
+    const int amd = perm ? ORDER_GIVEN : ORDER_AMD, own = perm ? ORDER_GIVEN : ORDER_DISSECTION;
+    add_runner(L, "ours", &peer_quadcover, own, perm, 1);
+    add_runner(L, "ours, 2 threads", &peer_quadcover, own, perm, 2);
     add_runner(L, perm ? "CHOLMOD" : "CHOLMOD, AMD", &peer_cholmod, amd, perm, 1);
     add_runner(L, perm ? "CXSparse" : "CXSparse, AMD", &peer_cxsparse, amd, perm, 1);
-    if (!perm) add_runner(L, "CHOLMOD, METIS", &peer_cholmod, ORDER_DISSECTION, NULL, 1);
+    if (!perm) add_runner(L, "CHOLMOD, METIS", &peer_cholmod, own, NULL, 1);
+    if (!perm) add_runner(L, "ours, AMD", &peer_quadcover, amd, NULL, 1);
 #ifdef BENCH_MUMPS
-    add_runner(L, perm ? "MUMPS" : "MUMPS, its choice", &peer_mumps,
-               perm ? ORDER_GIVEN : ORDER_DISSECTION, perm, 1);
+    add_runner(L, perm ? "MUMPS" : "MUMPS, its choice", &peer_mumps, own, perm, 1);
 #endif
 }
 
 static void compare(bench_lineup *L, const int32_t *perm, bench_comparison *out) {
     L->own = !perm;
     L->table = &out->table[perm ? TABLE_SAME : TABLE_OWN];
-    L->table->title = perm ? "The same ordering (AMD) for all" : "Each with its own ordering";
+    L->table->title = perm ? "The same ordering (AMD) for all" : "Each its own (ours: dissection)";
     line_up(L, perm);
     measure(L);
     finish(L, out);
@@ -116,6 +122,8 @@ void bench_compare(qc_ctx *ctx, const bench_matrix *M, const bench_limits *l,
     order_quadcover(M, ORDER_AMD, perm);
     L.quality = bench_order_quality(ctx, M, perm);
     if (effort->same) compare(&L, perm, out);
+    order_quadcover(M, ORDER_DISSECTION, perm);
+    L.quality = bench_order_quality(ctx, M, perm);
     if (effort->own) compare(&L, NULL, out);
     free(perm);
 }

@@ -15,8 +15,9 @@ typedef struct state {
 } state;
 
 static qc_analyze_options ordering_options(int ordering, const int32_t *perm) {
+    static const int32_t name[] = {QC_ORDER_GIVEN, QC_ORDER_AMD, QC_ORDER_DISSECTION};
     qc_analyze_options options = QC_ANALYZE_OPTIONS_INIT;
-    options.ordering = ordering == ORDER_GIVEN ? QC_ORDER_GIVEN : QC_ORDER_AMD;
+    options.ordering = name[ordering];
     options.permutation = perm;
     return options;
 }
@@ -92,8 +93,10 @@ const bench_peer peer_quadcover = {"QuadCover", create, analyze,    factor, refa
 void order_quadcover(const bench_matrix *M, int ordering, int32_t *perm) {
     const qc_analyze_options options = ordering_options(ordering, NULL);
     const qc__pattern pattern = {M->A.n, M->A.colptr, M->A.row};
+    qc_ctx_options one = QC_CTX_OPTIONS_INIT;
     qc_ctx *ctx = NULL;
-    bench_check(NULL, qc_ctx_create(NULL, &ctx));
+    one.threads = 1;
+    bench_check(NULL, qc_ctx_create(&one, &ctx));
     bench_check(ctx, qc__order(ctx, pattern, &options, perm));
     qc_ctx_free(ctx);
 }
