@@ -12,6 +12,7 @@ struct qc_solver_state {
     int64_t nnz;             /* entries of the upper triangle           */
     MUMPS_INT *irn, *jcn;    /* 2 nnz - n, from 1                       */
     mumps_double_complex *a; /* parallel                                */
+    MUMPS_INT *position;     /* n: of a row in the order, from 1        */
     double *scale;           /* n: square roots of the diagonal         */
     bool factorized;
 };

@@ -226,6 +226,10 @@ qc_status qc_analyze_real(qc_ctx *ctx, const qc_symmetric *A, const qc_analyze_o
     return create(ctx, (qc__pattern){A->n, A->colptr, A->row}, options, out);
 }
 
+void qc_symbolic_get_permutation(const qc_symbolic *S, int32_t *permutation) {
+    if (S->n > 0) memcpy(permutation, S->perm, (size_t)S->n * sizeof *permutation);
+}
+
 void qc_symbolic_get_info(const qc_symbolic *S, qc_symbolic_info *info) {
     qc_symbolic_info all = {sizeof all, S->n, S->nsuper, S->plan.largest_front, S->nnz_l, 0,
                             S->flops,   0,    0};

@@ -74,6 +74,8 @@ QC_API qc_status qc_analyze_real(qc_ctx *ctx, const qc_symmetric *A,
                                  const qc_analyze_options *options, qc_symbolic **out);
 QC_API void qc_symbolic_free(qc_symbolic *S); /* factors keep what they need: may be freed first */
 QC_API void qc_symbolic_get_info(const qc_symbolic *S, qc_symbolic_info *info);
+/* permutation (n entries) as for QC_ORDER_GIVEN: permutation[k] = row eliminated k-th. */
+QC_API void qc_symbolic_get_permutation(const qc_symbolic *S, int32_t *permutation);
 
 /* Numeric factorisation; A must have the pattern that was analysed (or a subset of it).
  * Errors: NOT_POSDEF (where = pivot: D(j) <= n eps A(j,j)), ARGUMENT, NOMEM, CANCELLED. */

@@ -129,11 +129,42 @@ static void bad_input_is_named(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* The order read back leaves the same fill. */
+static void permutation_can_be_given_back(void **state) {
+    (void)state;
+    qc_ctx *ctx = new_ctx(1);
+    test_matrix M = make_matrix(RANDOM, 150, 1);
+    const qc_hermitian A = hermitian(&M);
+    qc_symbolic *S = NULL, *T = NULL;
+    qc_symbolic_info first = QC_SYMBOLIC_INFO_INIT, second = QC_SYMBOLIC_INFO_INIT;
+    int32_t order[150];
+    bool seen[150] = {false};
+    qc_analyze_options options = QC_ANALYZE_OPTIONS_INIT;
+    assert_int_equal(qc_analyze(ctx, &A, NULL, &S), QC_OK);
+    qc_symbolic_get_permutation(S, order);
+    for (int k = 0; k < 150; k++) {
+        assert_in_range(order[k], 0, 149);
+        assert_false(seen[order[k]]);
+        seen[order[k]] = true;
+    }
+    options.ordering = QC_ORDER_GIVEN;
+    options.permutation = order;
+    assert_int_equal(qc_analyze(ctx, &A, &options, &T), QC_OK);
+    qc_symbolic_get_info(S, &first);
+    qc_symbolic_get_info(T, &second);
+    assert_int_equal(first.nnz_l, second.nnz_l);
+    qc_symbolic_free(S);
+    qc_symbolic_free(T);
+    free_matrix(&M);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(counts_match_dense_elimination),
         cmocka_unit_test(given_order_is_kept_up_to_equivalence),
         cmocka_unit_test(bad_input_is_named),
+        cmocka_unit_test(permutation_can_be_given_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
