@@ -27,8 +27,7 @@ void qc_factor_free(qc_factor *F) {
     qc__free(F->values);
     qc__free(F->D);
     qc__free(F->diagonal);
-    qc__free(F->journal);
-    qc__free(F->journal_column);
+    qc__modify_free(F);
     qc__free(F);
 }
 

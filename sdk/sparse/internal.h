@@ -86,12 +86,9 @@ struct qc_factor {
     bool usable;
     double *values; /* panels: unit lower triangle, the strict upper part is undefined */
     double *D; /* n pivots, permuted                                                           */
-    double *diagonal;         /* n: diagonal of A, permuted: the scale of each pivot */
-    qc__workspace *workspace; /* NULL until the first refactorisation, which keeps it */
-    double *journal;          /* updown: old columns, for roll back; grows  */
-    int32_t *journal_column;
-    int64_t journal_size, journal_columns; /* capacities */
-    int64_t journal_used, journal_count; /* doubles, columns recorded                            */
+    double *diagonal;          /* n: diagonal of A, permuted: the scale of each pivot */
+    qc__workspace *workspace;  /* NULL until the first refactorisation, which keeps it */
+    struct qc__modify *modify; /* journal, forward solution, work space; NULL until modified */
 };
 
 /* Values of A are fetched this many entries before their use; `from` has as many more elements. */
@@ -139,11 +136,9 @@ qc_symbolic *qc__symbolic_retain(const qc_symbolic *S);
 qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t components, qc_factor **out);
 qc_status qc__factor_check(qc_ctx *ctx, const qc_factor *F, int32_t components, bool values);
 
-/* journal.c: open reserves space for every column on the path from supernode s, kept in the factor
- * for the next call; record before a column (count doubles from its diagonal on) changes. */
-qc_status qc__journal_open(qc_ctx *ctx, qc_factor *F, int32_t s);
-void qc__journal_record(qc_factor *F, int32_t column, const double *x, int64_t count);
-void qc__journal_roll_back(qc_factor *F);
+/* modify.c: frees F->modify; a new factorisation ends transactions and makes z stale. */
+void qc__modify_free(qc_factor *F);
+void qc__modify_reset(qc_factor *F);
 
 /* front.c, front_real.c: partial LDL^H of one front in place. */
 typedef struct qc__front {

@@ -200,5 +200,6 @@ qc_status NAME(qc_refactorize)(qc_ctx *ctx, qc_factor *F, const matrix *A) {
     qc_status status = qc__factor_check(ctx, F, NC, false);
     if (status != QC_OK) return status;
     F->usable = false;
+    qc__modify_reset(F);
     return factor_matrix(ctx, F, A, true);
 }

@@ -111,10 +111,20 @@ QC_API qc_status qc_solve_forward_sparse(qc_ctx *ctx, const qc_factor *F, int32_
 QC_API qc_status qc_solve_refined(qc_ctx *ctx, const qc_factor *F, const qc_hermitian *A,
                                   int32_t steps, qc_complex *x, double *residual);
 
-/* A <- A + sigma w w^H, sigma = +1 or -1, w sparse with nw entries; the pattern of L is fixed: the
- * rows of w must differ and form a clique of A (ARGUMENT if they do not fit L). On any error F is
- * bit for bit as before. Entries which have decayed below 1e-80 of the largest are taken as zero.
- * Errors: NOT_POSDEF (a downdate left the cone; where = pivot), ARGUMENT, NOMEM. */
+/* --- modifications ---------------------------------------------------------------------------- */
+
+/* A <- A + sum over q < k of sigma_q w_q w_q^H, sigma_q = +1 or -1, in one sweep; w_q has the
+ * entries start[q] .. start[q+1) of row and w (start: k+1). The pattern of L is fixed: the rows of
+ * one w_q must differ and form a clique of A (ARGUMENT if they do not fit L). Positive terms are
+ * applied before negative ones. On any error F is bit for bit as before. Entries which have decayed
+ * below 1e-80 of the largest are taken as zero. Errors: NOT_POSDEF (a downdate left the cone;
+ * where = pivot), ARGUMENT, NOMEM, CANCELLED. */
+QC_API qc_status qc_updown_many(qc_ctx *ctx, qc_factor *F, int32_t k, const int *sigma,
+                                const int32_t *start, const int32_t *row, const qc_complex *w);
+QC_API qc_status qc_updown_many_real(qc_ctx *ctx, qc_factor *F, int32_t k, const int *sigma,
+                                     const int32_t *start, const int32_t *row, const double *w);
+
+/* The same for one vector with nw entries. */
 QC_API qc_status qc_updown(qc_ctx *ctx, qc_factor *F, int sigma, int32_t nw, const int32_t *row,
                            const qc_complex *w);
 QC_API qc_status qc_updown_real(qc_ctx *ctx, qc_factor *F, int sigma, int32_t nw,
@@ -122,10 +132,47 @@ QC_API qc_status qc_updown_real(qc_ctx *ctx, qc_factor *F, int sigma, int32_t nw
 
 /* Matching flip (thesis 6.2.1): A <- A + D where D couples row k with the rows l and m only:
  * D(k,l) += dl, D(k,m) += dm and the conjugates. Rank 2, one positive and one negative eigenvalue,
- * applied as update before downdate. On any error F is bit for bit as before. Errors as qc_updown.
- */
+ * as in qc_updown_many. */
 QC_API qc_status qc_flip(qc_ctx *ctx, qc_factor *F, int32_t k, int32_t l, qc_complex dl, int32_t m,
                          qc_complex dm);
+
+/* Transactions. begin sets a savepoint (they nest); rollback undoes, bit for bit, everything since
+ * the innermost one and ends it; commit keeps everything and ends it. Outside a transaction
+ * rollback undoes the last modification if that succeeded, once. A modification which fails within
+ * a transaction undoes itself only. qc_refactorize ends all transactions: there is no way back.
+ * Memory: the old entries of L and of the forward solution on the paths of all modifications since
+ * the outermost begin (outside: of the last one), at most one copy of the factor for each. Kept for
+ * reuse until the factor is freed. Errors: ARGUMENT (nothing to commit or to roll back), NOMEM
+ * (begin). */
+QC_API qc_status qc_factor_begin(qc_ctx *ctx, qc_factor *F);
+QC_API qc_status qc_factor_commit(qc_ctx *ctx, qc_factor *F);
+QC_API qc_status qc_factor_rollback(qc_ctx *ctx, qc_factor *F);
+
+/* Forward solution of one right-hand side b (n, copied, the caller's numbering) carried along with
+ * the factor: every modification brings it up to date in the same sweep and a rollback restores it.
+ * Attaching again replaces b; neither attach nor detach is possible within a transaction
+ * (ARGUMENT). Costs a forward solve, and memory for n entries of b, of y, and one entry for every
+ * row below the diagonal block of a supernode. Errors: ARGUMENT, NOMEM. */
+QC_API qc_status qc_forward_attach(qc_ctx *ctx, qc_factor *F, const qc_complex *b);
+QC_API qc_status qc_forward_attach_real(qc_ctx *ctx, qc_factor *F, const double *b);
+QC_API qc_status qc_forward_detach(qc_ctx *ctx, qc_factor *F);
+
+/* b(row[p]) += db[p], a modification of its own for rollback. Its effect on y is computed by the
+ * sweep of the next modification, or when y or the energy is asked for: a flip which also changes b
+ * takes one sweep. Errors: ARGUMENT (no right-hand side, bad row), NOMEM. */
+QC_API qc_status qc_forward_add(qc_ctx *ctx, qc_factor *F, int32_t nb, const int32_t *row,
+                                const qc_complex *db);
+QC_API qc_status qc_forward_add_real(qc_ctx *ctx, qc_factor *F, int32_t nb, const int32_t *row,
+                                     const double *db);
+
+/* y = D^{-1/2} L^{-1} P b (n) as from qc_solve_forward, and b^H A^{-1} b = |y|^2; the latter takes
+ * no work proportional to n. Both modify F if a change of b is waiting. No rounding errors pile up:
+ * the values are bit for bit those of attaching b anew. Errors: ARGUMENT, NOMEM. */
+QC_API qc_status qc_forward_get(qc_ctx *ctx, qc_factor *F, qc_complex *y);
+QC_API qc_status qc_forward_get_real(qc_ctx *ctx, qc_factor *F, double *y);
+QC_API qc_status qc_forward_energy(qc_ctx *ctx, qc_factor *F, double *energy);
+
+/* --- summaries -------------------------------------------------------------------------------- */
 
 /* log(det A) = sum log D. */
 QC_API double qc_factor_logdet(const qc_factor *F);

@@ -6,6 +6,30 @@
 
 #include "sdk/base/internal.h"
 
+/* One front of a modification (theory S.10 to S.13). Arrays count entries of NC doubles, except D,
+ * diagonal, a, journal, multipliers (doubles). */
+typedef struct qc__update_front {
+    int64_t r, w, k0;       /* rows, columns, first column which changes (w: none) */
+    double *panel;          /* r x w */
+    double *D;              /* w */
+    const double *diagonal; /* w: the scale of each pivot */
+    double floor;           /* pivots above floor * diagonal are accepted */
+    int32_t vectors;
+    double *const *vector; /* r each: leave as the vectors on the rows below the diagonal block */
+    double *const *alpha;  /* one each, sigma at first, changes */
+    double negligible;     /* entries of vectors up to this become zero */
+    double *solution;      /* r or NULL: right-hand side -> L11^{-1} f1 and f2 - L21 L11^{-1} f1 */
+    double *journal;       /* advances past the old entries written there */
+    double *multipliers;   /* QC__UPDATE_MULTIPLIERS for each vector */
+} qc__update_front;
+
+enum { QC__UPDATE_BLOCK = 32, QC__UPDATE_MULTIPLIERS = 6 * QC__UPDATE_BLOCK };
+
+/* Doubles which a front needs at most in the journal. */
+static inline int64_t qc__update_journal(int32_t components, int64_t r, int64_t w) {
+    return w * (components * r + 16);
+}
+
 /* Steps of the partial LDL^H of one front (front_kernel.c): a panel of r rows and w columns and the
  * m x m update matrix U, m = r - w, both column-major; only lower triangles count. Columns [k0, k1)
  * are a block of at most QC__FRONT_BLOCK whose earlier blocks are subtracted. */
@@ -30,6 +54,12 @@ typedef struct qc__kernels {
      * QC__FRONT_BLOCK doubles. */
     void (*front_subtract)(int64_t r, int64_t w, int64_t k0, int64_t k1, double *panel, double *U,
                            const double *B, bool fresh, int64_t t, double *copy);
+    /* Returns -1, or the local column whose pivot is not above its floor; then the entries changed
+     * so far are those in the journal, and all of D. */
+    int32_t (*update_front)(qc__update_front *front);
+    /* Writes the journal of one front back: the doubles [journal, end). */
+    void (*restore_front)(int64_t r, int64_t w, int64_t k0, double *panel, const double *journal,
+                          const double *end);
 } qc__kernels;
 
 /* The table for one instruction set; components: 1 real, 2 complex. */
@@ -48,6 +78,9 @@ void KERNEL(qc__front_pack)(int64_t r, int64_t w, int64_t k0, int64_t k1, const 
 int64_t KERNEL(qc__front_tiles)(int64_t r, int64_t w, int64_t k1);
 void KERNEL(qc__front_subtract)(int64_t r, int64_t w, int64_t k0, int64_t k1, double *panel,
                                 double *U, const double *B, bool fresh, int64_t t, double *copy);
+int32_t KERNEL(qc__update_front)(qc__update_front *front);
+void KERNEL(qc__restore_front)(int64_t r, int64_t w, int64_t k0, double *panel,
+                               const double *journal, const double *end);
 #ifdef QC__REAL
 #define NC 1
 #else

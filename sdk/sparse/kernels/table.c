@@ -18,4 +18,6 @@ const qc__kernels KERNEL(qc__kernels) = {
     .front_pack = KERNEL(qc__front_pack),
     .front_tiles = KERNEL(qc__front_tiles),
     .front_subtract = KERNEL(qc__front_subtract),
+    .update_front = KERNEL(qc__update_front),
+    .restore_front = KERNEL(qc__restore_front),
 };

@@ -4,6 +4,7 @@
 #ifndef QC_SPARSE_VECTOR_H
 #define QC_SPARSE_VECTOR_H
 
+#include <math.h>
 #include <stdint.h>
 
 /* Small loops with constant bounds must vanish: what they run over has to stay in registers. */
@@ -58,6 +59,24 @@ static inline vec v_swap(vec x) {
 static inline vec v_alternate(double x) {
     return _mm512_set_pd(x, -x, x, -x, x, -x, x, -x);
 }
+static inline vec v_pair(const double *p) { /* p[0], p[1], p[0], p[1], ... */
+    return _mm512_broadcast_f64x2(_mm_loadu_pd(p));
+}
+static inline vec v_flush(vec x, vec tiny) { /* |x| <= tiny becomes 0 */
+    return _mm512_maskz_mov_pd(_mm512_cmp_pd_mask(_mm512_abs_pd(x), tiny, _CMP_NLE_UQ), x);
+}
+static inline vec v_join(vec first, vec rest, int64_t n) { /* n lanes of `first`, then `rest` */
+    return _mm512_mask_mov_pd(rest, v_mask(n), first);
+}
+static inline vec v_spread(vec x, int lane) { /* one lane to all */
+    return _mm512_permutexvar_pd(_mm512_set1_epi64(lane), x);
+}
+static inline vec v_times_i(vec x) {
+    return _mm512_xor_pd(v_swap(x), _mm512_set_pd(0, -0.0, 0, -0.0, 0, -0.0, 0, -0.0));
+}
+static inline double v_first(vec x) {
+    return _mm512_cvtsd_f64(x);
+}
 static inline double v_sum(vec x) {
     return _mm512_reduce_add_pd(x);
 }
@@ -104,6 +123,27 @@ static inline vec v_swap(vec x) {
 }
 static inline vec v_alternate(double x) {
     return _mm256_set_pd(x, -x, x, -x);
+}
+static inline vec v_pair(const double *p) {
+    return _mm256_broadcast_pd((const __m128d *)(const void *)p);
+}
+static inline vec v_flush(vec x, vec tiny) {
+    const vec size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), x);
+    return _mm256_and_pd(_mm256_cmp_pd(size, tiny, _CMP_NLE_UQ), x);
+}
+static inline vec v_join(vec first, vec rest, int64_t n) {
+    return _mm256_blendv_pd(rest, first, _mm256_castsi256_pd(v_mask(n)));
+}
+static inline vec v_spread(vec x, int lane) {
+    const __m256i index =
+        _mm256_add_epi32(_mm256_set1_epi32(2 * lane), _mm256_set_epi32(1, 0, 1, 0, 1, 0, 1, 0));
+    return _mm256_castsi256_pd(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(x), index));
+}
+static inline vec v_times_i(vec x) {
+    return _mm256_xor_pd(v_swap(x), _mm256_set_pd(0, -0.0, 0, -0.0));
+}
+static inline double v_first(vec x) {
+    return _mm256_cvtsd_f64(x);
 }
 static inline double v_sum(vec x) {
     const __m128d half = _mm_add_pd(_mm256_castpd256_pd128(x), _mm256_extractf128_pd(x, 1));
@@ -152,6 +192,24 @@ static inline vec v_swap(vec x) {
 }
 static inline vec v_alternate(double x) {
     return (vec){-x, x};
+}
+static inline vec v_pair(const double *p) {
+    return (vec){p[0], p[1]};
+}
+static inline vec v_flush(vec x, vec tiny) {
+    return (vec){fabs(x.a) <= tiny.a ? 0 : x.a, fabs(x.b) <= tiny.b ? 0 : x.b};
+}
+static inline vec v_join(vec first, vec rest, int64_t n) {
+    return (vec){n > 0 ? first.a : rest.a, n > 1 ? first.b : rest.b};
+}
+static inline vec v_spread(vec x, int lane) {
+    return v_set(lane == 0 ? x.a : x.b);
+}
+static inline vec v_times_i(vec x) {
+    return (vec){-x.b, x.a};
+}
+static inline double v_first(vec x) {
+    return x.a;
 }
 static inline double v_sum(vec x) {
     return x.a + x.b;

@@ -1,45 +1,5 @@
 /* Matching flips (thesis 6.2.1) on matrices made of triangles, against refactorisation. */
-#include "support.h"
-
-/* Strip of triangles (t, t+1, t+2) and some random ones; every triangle is a clique. */
-static test_matrix triangles(int32_t n, int32_t extra, int32_t (*triangle)[3], int32_t *count) {
-    int32_t(*edge)[2] = malloc((size_t)(n + extra) * 3 * sizeof *edge);
-    int64_t ne = 0;
-    *count = 0;
-    for (int32_t t = 0; t < n - 2 + extra; t++) {
-        int32_t a = t, b = t + 1, c = t + 2;
-        if (t >= n - 2) a = pick(n), b = pick(n), c = pick(n);
-        if (a == b || b == c || a == c) continue;
-        triangle[*count][0] = a, triangle[*count][1] = b, triangle[(*count)++][2] = c;
-        edge[ne][0] = a, edge[ne++][1] = b;
-        edge[ne][0] = b, edge[ne++][1] = c;
-        edge[ne][0] = c, edge[ne++][1] = a;
-    }
-    test_matrix M = from_edges(n, ne, (const int32_t(*)[2])edge, 1.0);
-    free(edge);
-    return M;
-}
-
-static qc_complex *entry(test_matrix *M, int32_t row, int32_t column) {
-    int64_t p = M->colptr[column];
-    while (M->row[p] != row) p++;
-    return &M->val[p];
-}
-
-/* D(k,l) += d and the conjugate */
-static void add(test_matrix *M, int32_t k, int32_t l, qc_complex d) {
-    qc_complex *a = k < l ? entry(M, k, l) : entry(M, l, k);
-    a->re += d.re;
-    a->im += k < l ? d.im : -d.im;
-}
-
-/* Turns A(k,l) by i^r, as a flip of the matching does. */
-static qc_complex turn(test_matrix *M, int32_t k, int32_t l, int r) {
-    const qc_complex *a = k < l ? entry(M, k, l) : entry(M, l, k);
-    const cplx x = a->re + I * (k < l ? a->im : -a->im);
-    const cplx powers[4] = {1, I, -1, -I}, d = x * powers[r] - x;
-    return (qc_complex){creal(d), cimag(d)};
-}
+#include "triangles.h"
 
 static void flips_equal_refactorisation(void **state) {
     (void)state;
@@ -49,13 +9,9 @@ static void flips_equal_refactorisation(void **state) {
     const int64_t n2 = (int64_t)M.n * M.n;
     qc_factor *F = factor_of(ctx, &M, NULL);
     for (int step = 0; step < 200; step++) {
-        const int32_t *t = triangle[pick(count)], at = pick(3);
-        const int32_t k = t[at], l = t[(at + 1) % 3], m = t[(at + 2) % 3];
-        const int r = 1 + pick(3);
-        const qc_complex dl = turn(&M, k, l, r), dm = turn(&M, k, m, r);
-        assert_int_equal(qc_flip(ctx, F, k, l, dl, m, dm), QC_OK);
-        add(&M, k, l, dl);
-        add(&M, k, m, dm);
+        const flip f = random_flip(&M, triangle, count);
+        assert_int_equal(apply_flip(ctx, F, f), QC_OK);
+        add_flip(&M, f);
         if (step % 40 == 0 || step == 199) {
             cplx *A = dense_of(&M, false), *B = reconstruct(F);
             assert_true(max_difference(n2, A, B) < 1e-12 * max_abs(n2, A));

@@ -195,6 +195,30 @@ static inline qc_ctx *new_ctx(uint32_t threads) {
 
 static const char *const instruction_sets[] = {"portable", "avx2", "avx512"};
 
+/* A += sigma w w^H, w with nw entries; the real part of w for the real matrix. */
+static inline void add_square(test_matrix *M, int sigma, int nw, const int32_t *row,
+                              const qc_complex *w) {
+    for (int a = 0; a < nw; a++)
+        for (int b = 0; b < nw; b++) {
+            if (row[a] > row[b]) continue;
+            int64_t p = M->colptr[row[b]];
+            while (M->row[p] != row[a]) p++;
+            const cplx x = (w[a].re + I * w[a].im) * (w[b].re - I * w[b].im);
+            M->val[p].re += sigma * creal(x);
+            if (a != b) M->val[p].im += sigma * cimag(x);
+            M->real[p] += sigma * w[a].re * w[b].re;
+        }
+}
+
+/* The rows of one off-diagonal entry; false: there is none, row[0] only. */
+static inline bool random_clique(const test_matrix *M, int32_t row[2]) {
+    const int32_t j = pick(M->n);
+    const int64_t begin = M->colptr[j], count = M->colptr[j + 1] - begin;
+    row[0] = j;
+    row[1] = count > 1 ? M->row[begin + pick((int32_t)count - 1)] : j;
+    return row[0] != row[1];
+}
+
 static inline qc_factor *factor_of(qc_ctx *ctx, const test_matrix *M,
                                    const qc_analyze_options *options) {
     const qc_hermitian A = hermitian(M);

@@ -1,29 +1,6 @@
 /* Rank-1 updates against refactorisation; failures leave every bit. */
 #include "support.h"
 
-/* A clique of A: the rows of one off-diagonal entry. */
-static bool random_clique(const test_matrix *M, int32_t row[2]) {
-    const int32_t j = pick(M->n);
-    const int64_t begin = M->colptr[j], count = M->colptr[j + 1] - begin;
-    row[0] = j;
-    row[1] = count > 1 ? M->row[begin + pick((int32_t)count - 1)] : j;
-    return row[0] != row[1];
-}
-
-/* A += sigma w w^H in the test matrix. */
-static void apply(test_matrix *M, int sigma, int nw, const int32_t *row, const qc_complex *w) {
-    for (int a = 0; a < nw; a++)
-        for (int b = 0; b < nw; b++) {
-            if (row[a] > row[b]) continue;
-            int64_t p = M->colptr[row[b]];
-            while (M->row[p] != row[a]) p++;
-            const cplx x = (w[a].re + I * w[a].im) * (w[b].re - I * w[b].im);
-            M->val[p].re += sigma * creal(x);
-            if (a != b) M->val[p].im += sigma * cimag(x);
-            M->real[p] += sigma * w[a].re * w[b].re;
-        }
-}
-
 static void check_against_matrix(const qc_factor *F, const test_matrix *M, bool real) {
     const int64_t n2 = (int64_t)M->n * M->n;
     cplx *A = dense_of(M, real), *B = reconstruct(F);
@@ -36,9 +13,9 @@ static void check_against_matrix(const qc_factor *F, const test_matrix *M, bool 
     free(B);
 }
 
-static void chain_equals_refactorisation(void **state) {
-    (void)state;
-    qc_ctx *ctx = new_ctx(1);
+static void chain_of_updates(const char *instructions) {
+    qc_ctx *ctx = new_ctx_with(1, instructions);
+    if (!ctx) return;
     for (int shape = 0; shape < SHAPES; shape++) {
         test_matrix M = make_matrix(shape, 100, 1);
         qc_factor *F = factor_of(ctx, &M, NULL);
@@ -51,7 +28,7 @@ static void chain_equals_refactorisation(void **state) {
             const uint64_t before = fingerprint(F);
             const qc_status status = qc_updown(ctx, F, sigma, nw, row, w);
             if (status == QC_OK) {
-                apply(&M, sigma, nw, row, w);
+                add_square(&M, sigma, nw, row, w);
             } else {
                 assert_int_equal(status, QC_ERR_NOT_POSDEF);
                 assert_true(before == fingerprint(F));
@@ -64,9 +41,14 @@ static void chain_equals_refactorisation(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void real_chain_equals_refactorisation(void **state) {
+static void chain_equals_refactorisation(void **state) {
     (void)state;
-    qc_ctx *ctx = new_ctx(1);
+    for (int i = 0; i < 3; i++) chain_of_updates(instruction_sets[i]);
+}
+
+static void real_chain_of_updates(const char *instructions) {
+    qc_ctx *ctx = new_ctx_with(1, instructions);
+    if (!ctx) return;
     for (int shape = 0; shape < SHAPES; shape++) {
         test_matrix M = make_matrix(shape, 100, 1);
         qc_factor *F = real_factor_of(ctx, &M, NULL);
@@ -76,13 +58,19 @@ static void real_chain_equals_refactorisation(void **state) {
             const double size = sigma < 0 ? 0.2 : 0.5;
             const qc_complex w[2] = {{size * uniform(), 0}, {size * uniform(), 0}};
             const double real[2] = {w[0].re, w[1].re};
-            if (qc_updown_real(ctx, F, sigma, nw, row, real) == QC_OK) apply(&M, sigma, nw, row, w);
+            if (qc_updown_real(ctx, F, sigma, nw, row, real) == QC_OK)
+                add_square(&M, sigma, nw, row, w);
         }
         check_against_matrix(F, &M, true);
         qc_factor_free(F);
         free_matrix(&M);
     }
     qc_ctx_free(ctx);
+}
+
+static void real_chain_equals_refactorisation(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; i++) real_chain_of_updates(instruction_sets[i]);
 }
 
 static void update_then_downdate_is_identity(void **state) {
@@ -108,9 +96,9 @@ static void update_then_downdate_is_identity(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void failed_downdate_changes_nothing(void **state) {
-    (void)state;
-    qc_ctx *ctx = new_ctx(1);
+static void failing_downdates(const char *instructions) {
+    qc_ctx *ctx = new_ctx_with(1, instructions);
+    if (!ctx) return;
     int failed_late = 0;
     for (int shape = 0; shape < SHAPES; shape++) {
         test_matrix M = make_matrix(shape, 120, 0.01);
@@ -138,6 +126,11 @@ static void failed_downdate_changes_nothing(void **state) {
     }
     assert_true(failed_late > 0); /* after columns had been changed */
     qc_ctx_free(ctx);
+}
+
+static void failed_downdate_changes_nothing(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; i++) failing_downdates(instruction_sets[i]);
 }
 
 static void arguments_are_checked(void **state) {

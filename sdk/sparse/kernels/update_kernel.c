@@ -1,0 +1,424 @@
+/* One front of the sweep for A + sum sigma_q w_q w_q^H and for the forward solution which goes with
+ * it (theory S.7, S.10 to S.12). The columns go in blocks: the diagonal block gives the multipliers
+ * of every column and vector; then the rows below are independent, and a tile of them keeps its
+ * part of the vectors in registers through all columns of the block. Vectors go in pairs, so that
+ * an entry of L is read and written once for two of them; further pairs find the tile in the
+ * first-level cache. Old entries are copied to the journal in the order in which they are read. */
+#include <float.h>
+#include "sdk/sparse/kernels/kernels.h"
+#include "sdk/sparse/kernels/vector.h"
+
+enum { GROUPS = 4, BLOCK = GROUPS * LANES / NC, TILE = LANES == 8 ? 4 : 2, STEP = 6 };
+
+/* A number as factor of vectors: re, and (-im, im) alternating. In memory: re, -im, im. */
+typedef struct multiplier {
+    vec re, im;
+} multiplier;
+
+static inline void set(double *m, double re, double im) {
+    m[0] = re;
+    m[1] = -im;
+    m[2] = im;
+}
+
+QC__INLINE multiplier load(const double *m) {
+    multiplier c;
+    c.re = v_set(m[0]);
+    c.im = NC == 2 ? v_pair(m + 1) : v_zero();
+    return c;
+}
+
+/* y - c x and y + c x */
+QC__INLINE vec subtract(vec y, multiplier c, vec x) {
+    if (NC == 1) return v_fnma(c.re, x, y);
+    return v_fnma(c.im, v_swap(x), v_fnma(c.re, x, y));
+}
+QC__INLINE vec add(vec y, multiplier c, vec x) {
+    if (NC == 1) return v_fma(c.re, x, y);
+    return v_fma(c.im, v_swap(x), v_fma(c.re, x, y));
+}
+
+/* A tile: some rows of the columns of one block. */
+typedef struct tile {
+    double *x;  /* first entry */
+    int64_t ld; /* doubles between columns */
+    int64_t columns;
+    int64_t doubles; /* in one column; a tile of TILE vectors is full */
+    const double *m; /* multipliers of the first column */
+    double *v[2];    /* the vectors on these rows */
+    double *journal;
+    double negligible;
+} tile;
+
+/* Vector t of T, the last of which may be a part. */
+QC__INLINE vec get(const double *p, int t, int T, bool part, int64_t last) {
+    return part && t == T - 1 ? v_load_part(p + t * LANES, last) : v_load(p + t * LANES);
+}
+QC__INLINE void put(double *p, vec x, int t, int T, bool part, int64_t last) {
+    if (part && t == T - 1)
+        v_store_part(p + t * LANES, x, last);
+    else
+        v_store(p + t * LANES, x);
+}
+
+/* (S.7): w_i -= p l_i, l_i += b w_i, for V vectors after each other */
+QC__INLINE void update_tile(const tile *R, const int T, const bool part, const int V,
+                            const bool save) {
+    const int64_t last = R->doubles - (T - 1) * LANES, ld = R->ld;
+    const double *m = R->m;
+    double *x = R->x, *journal = R->journal;
+    vec v[2][TILE];
+    for (int q = 0; q < V; q++)
+        for (int t = 0; t < T; t++) v[q][t] = get(R->v[q], t, T, part, last);
+    for (int64_t k = R->columns; k > 0; k--) {
+        multiplier p[2], b[2];
+        for (int q = 0; q < V; q++) {
+            p[q] = load(m + 6 * q);
+            b[q] = load(m + 6 * q + 3);
+        }
+        for (int t = 0; t < T; t++) {
+            vec l = get(x, t, T, part, last);
+            if (save) v_store(journal + t * LANES, l);
+            for (int q = 0; q < V; q++) {
+                v[q][t] = subtract(v[q][t], p[q], l);
+                l = add(l, b[q], v[q][t]);
+            }
+            put(x, l, t, T, part, last);
+        }
+        x += ld;
+        m += STEP * V;
+        if (save) journal += T * LANES;
+    }
+    const vec tiny = v_set(R->negligible);
+    for (int q = 0; q < V; q++)
+        for (int t = 0; t < T; t++) put(R->v[q], v_flush(v[q][t], tiny), t, T, part, last);
+}
+
+/* f_i -= l_i z */
+QC__INLINE void solve_tile(const tile *R, const int T, const bool part) {
+    const int64_t last = R->doubles - (T - 1) * LANES, ld = R->ld;
+    const double *x = R->x, *m = R->m;
+    vec f[TILE];
+    for (int t = 0; t < T; t++) f[t] = get(R->v[0], t, T, part, last);
+    for (int64_t k = R->columns; k > 0; k--) {
+        const multiplier z = load(m);
+        for (int t = 0; t < T; t++) f[t] = subtract(f[t], z, get(x, t, T, part, last));
+        x += ld;
+        m += 3;
+    }
+    for (int t = 0; t < T; t++) put(R->v[0], f[t], t, T, part, last);
+}
+
+QC__INLINE void restore_tile(const tile *R, const double *journal, const int T, const bool part) {
+    const int64_t last = R->doubles - (T - 1) * LANES, ld = R->ld;
+    double *x = R->x;
+    for (int64_t k = R->columns; k > 0; k--) {
+        for (int t = 0; t < T; t++) put(x, v_load(journal + t * LANES), t, T, part, last);
+        x += ld;
+        journal += T * LANES;
+    }
+}
+
+/* The statement for a tile of T vectors, `part` of the last. */
+#define FOR_SIZE(R, call)                                                                          \
+    do {                                                                                           \
+        if ((R)->doubles == TILE * LANES) {                                                        \
+            call(TILE, false);                                                                     \
+        } else {                                                                                   \
+            switch ((int)(((R)->doubles + LANES - 1) / LANES)) {                                   \
+            case 1:                                                                                \
+                call(1, true);                                                                     \
+                break;                                                                             \
+            case 2:                                                                                \
+                call(2, true);                                                                     \
+                break;                                                                             \
+            case 3:                                                                                \
+                call(TILE < 3 ? TILE : 3, true);                                                   \
+                break;                                                                             \
+            default:                                                                               \
+                call(TILE, true);                                                                  \
+            }                                                                                      \
+        }                                                                                          \
+    } while (0)
+
+static void update_rows(const tile *R, int V, bool save) {
+#define PAIR_SAVE(T, part) update_tile(R, T, part, 2, true)
+#define PAIR(T, part)      update_tile(R, T, part, 2, false)
+#define ONE_SAVE(T, part)  update_tile(R, T, part, 1, true)
+#define ONE(T, part)       update_tile(R, T, part, 1, false)
+    if (V == 2 && save)
+        FOR_SIZE(R, PAIR_SAVE);
+    else if (V == 2)
+        FOR_SIZE(R, PAIR);
+    else if (save)
+        FOR_SIZE(R, ONE_SAVE);
+    else
+        FOR_SIZE(R, ONE);
+}
+
+static void solve_rows(const tile *R) {
+#define SOLVE(T, part) solve_tile(R, T, part)
+    FOR_SIZE(R, SOLVE);
+}
+
+static void restore_rows(const tile *R, const double *journal) {
+#define RESTORE(T, part) restore_tile(R, journal, T, part)
+    FOR_SIZE(R, RESTORE);
+}
+
+/* Doubles of the next tile when n are left. */
+static inline int64_t tile_size(int64_t n) {
+    return n < TILE * LANES ? n : TILE * LANES;
+}
+static inline int64_t tile_journal(int64_t doubles, int64_t columns) {
+    return (doubles + LANES - 1) / LANES * LANES * columns;
+}
+
+/* (S.8) Pivot d under the vector entry p = (re, im): m gets p, b. A pivot which stays as it is
+ * cannot fail. rho = 1 / alpha. */
+QC__INLINE bool change_pivot(double re, double im, double floor, double *d, double *alpha,
+                             double *rho, double *m) {
+    const double inverse = 1 / *d, changed = *alpha + (re * re + im * im) * inverse;
+    const bool same = changed == *alpha;
+    *d = same ? *d : *d * (changed * *rho);
+    *alpha = changed;
+    *rho = 1 / changed;
+    const double scale = inverse * *rho;
+    set(m, re, im);
+    set(m + 3, scale * re, -scale * im);
+    return same || (*d > floor && *d <= DBL_MAX);
+}
+
+/* y - c x and y + c x for c = re + i im, the two spread */
+QC__INLINE vec subtract_product(vec y, vec re, vec im, vec x) {
+    y = v_fnma(re, x, y);
+    return NC == 1 ? y : v_fnma(im, v_times_i(x), y);
+}
+QC__INLINE vec add_product(vec y, vec re, vec im, vec x) {
+    y = v_fma(re, x, y);
+    return NC == 1 ? y : v_fma(im, v_times_i(x), y);
+}
+
+/* The diagonal block of the columns [begin, end), whose rows are G vectors, under the V vectors
+ * from q on, which stay in registers. Old entries go to `journal` unless that is NULL. Returns -1
+ * or the column whose pivot fails: then all columns before it have changed. */
+QC__INLINE int32_t update_block(const qc__update_front *f, int64_t begin, int64_t end, int32_t q,
+                                double *m, double *journal, const int V, const int G) {
+    const int64_t last = NC * (end - begin) - (G - 1) * LANES;
+    double *x = f->panel + NC * (begin * f->r + begin);
+    double alpha[2], rho[2];
+    vec v[2][GROUPS];
+    for (int j = 0; j < V; j++) {
+        alpha[j] = *f->alpha[q + j];
+        rho[j] = 1 / alpha[j];
+        for (int g = 0; g < G; g++) v[j][g] = get(f->vector[q + j] + NC * begin, g, G, true, last);
+    }
+    int64_t column = begin;
+    for (int t = 0; t < G; t++) {
+        const int64_t lanes = t == G - 1 ? last : LANES;
+        for (int64_t lane = 0; lane < lanes; lane += NC, column++) {
+            const double floor = f->floor * f->diagonal[column];
+            double d = f->D[column];
+            bool good = true;
+            vec p[2][2], b[2][2];
+            for (int j = 0; j < V; j++) {
+                p[j][0] = v_spread(v[j][t], (int)lane);
+                p[j][1] = NC == 2 ? v_spread(v[j][t], (int)lane + 1) : v_zero();
+                good &= change_pivot(v_first(p[j][0]), v_first(p[j][1]), floor, &d, &alpha[j],
+                                     &rho[j], m + STEP * j);
+                b[j][0] = v_set(m[STEP * j + 3]);
+                b[j][1] = v_set(m[STEP * j + 5]);
+            }
+            if (!good) return (int32_t)column;
+            f->D[column] = d;
+            for (int g = t; g < G; g++) {
+                const vec old = get(x, g, G, true, last);
+                if (journal) v_store(journal + (g - t) * LANES, old);
+                vec l = g == t ? v_join(v_zero(), old, lane + NC) : old;
+                for (int j = 0; j < V; j++) {
+                    v[j][g] = subtract_product(v[j][g], p[j][0], p[j][1], l);
+                    l = add_product(l, b[j][0], b[j][1], v[j][g]);
+                }
+                put(x, g == t ? v_join(old, l, lane + NC) : l, g, G, true, last);
+            }
+            if (journal) journal += (G - t) * LANES;
+            x += NC * f->r;
+            m += STEP * V;
+        }
+    }
+    for (int j = 0; j < V; j++) *f->alpha[q + j] = alpha[j];
+    return -1;
+}
+
+/* f1 <- L11^{-1} f1 on the rows of the block; m: multipliers z. */
+QC__INLINE void solve_block(const qc__update_front *f, int64_t begin, int64_t end, double *m,
+                            const int G) {
+    const int64_t last = NC * (end - begin) - (G - 1) * LANES;
+    const double *x = f->panel + NC * (begin * f->r + begin);
+    double *solution = f->solution + NC * begin;
+    vec y[GROUPS];
+    for (int g = 0; g < G; g++) y[g] = get(solution, g, G, true, last);
+    for (int t = 0; t < G; t++) {
+        const int64_t lanes = t == G - 1 ? last : LANES;
+        for (int64_t lane = 0; lane < lanes; lane += NC) {
+            const vec re = v_spread(y[t], (int)lane);
+            const vec im = NC == 2 ? v_spread(y[t], (int)lane + 1) : v_zero();
+            set(m, v_first(re), v_first(im));
+            for (int g = t; g < G; g++) {
+                const vec l = get(x, g, G, true, last);
+                y[g] = subtract_product(y[g], re, im, g == t ? v_join(v_zero(), l, lane + NC) : l);
+            }
+            x += NC * f->r;
+            m += 3;
+        }
+    }
+    for (int g = 0; g < G; g++) put(solution, y[g], g, G, true, last);
+}
+
+/* Writes the block back; returns the end of its part of the journal. */
+static const double *restore_block(double *panel, int64_t r, int64_t begin, int64_t end,
+                                   const double *journal) {
+    const int64_t doubles = NC * (end - begin);
+    for (int64_t k = begin; k < end; k++) {
+        double *x = panel + NC * (k * r + begin);
+        for (int64_t i = NC * (k - begin) / LANES * LANES; i < doubles; i += LANES) {
+            const int64_t left = doubles - i;
+            v_store_part(x + i, v_load(journal), left < LANES ? left : LANES);
+            journal += LANES;
+        }
+    }
+    return journal;
+}
+
+/* The columns from `bad` on, which a failed pivot has left alone, into the journal of the block. */
+static void save_rest(const qc__update_front *f, int64_t begin, int64_t bad, int64_t end,
+                      double *journal) {
+    const int64_t doubles = NC * (end - begin);
+    for (int64_t k = begin; k < end; k++) {
+        const double *x = f->panel + NC * (k * f->r + begin);
+        for (int64_t i = NC * (k - begin) / LANES * LANES; i < doubles; i += LANES) {
+            const int64_t left = doubles - i;
+            if (k >= bad) v_store(journal, v_load_part(x + i, left < LANES ? left : LANES));
+            journal += LANES;
+        }
+    }
+}
+
+/* Doubles of the journal of a block. */
+static inline int64_t block_journal(int64_t columns) {
+    int64_t sum = 0;
+    for (int64_t top = 0; top < NC * columns; top += NC)
+        sum += (NC * columns + LANES - 1) / LANES * LANES - top / LANES * LANES;
+    return sum;
+}
+
+static int32_t update_pair(const qc__update_front *f, int64_t k, int64_t end, int32_t q, double *m,
+                           double *journal) {
+    switch ((int)((NC * (end - k) + LANES - 1) / LANES)) {
+    case 1:
+        return update_block(f, k, end, q, m, journal, 2, 1);
+    case 2:
+        return update_block(f, k, end, q, m, journal, 2, 2);
+    case 3:
+        return update_block(f, k, end, q, m, journal, 2, 3);
+    default:
+        return update_block(f, k, end, q, m, journal, 2, 4);
+    }
+}
+static int32_t update_one(const qc__update_front *f, int64_t k, int64_t end, int32_t q, double *m,
+                          double *journal) {
+    switch ((int)((NC * (end - k) + LANES - 1) / LANES)) {
+    case 1:
+        return update_block(f, k, end, q, m, journal, 1, 1);
+    case 2:
+        return update_block(f, k, end, q, m, journal, 1, 2);
+    case 3:
+        return update_block(f, k, end, q, m, journal, 1, 3);
+    default:
+        return update_block(f, k, end, q, m, journal, 1, 4);
+    }
+}
+static void solve_any(const qc__update_front *f, int64_t k, int64_t end, double *m) {
+    switch ((int)((NC * (end - k) + LANES - 1) / LANES)) {
+    case 1:
+        solve_block(f, k, end, m, 1);
+        break;
+    case 2:
+        solve_block(f, k, end, m, 2);
+        break;
+    case 3:
+        solve_block(f, k, end, m, 3);
+        break;
+    default:
+        solve_block(f, k, end, m, 4);
+    }
+}
+
+/* All rows below the block [begin, end). */
+static void rows_below(qc__update_front *f, int64_t begin, int64_t end, int32_t vectors,
+                       const double *z) {
+    const int64_t columns = end - begin, below = NC * (f->r - end);
+    for (int64_t i = 0; i < below;) {
+        const int64_t doubles = tile_size(below - i), row = NC * end + i;
+        tile R = {f->panel + NC * begin * f->r + row,
+                  NC * f->r,
+                  columns,
+                  doubles,
+                  f->multipliers,
+                  {NULL, NULL},
+                  f->journal,
+                  f->negligible};
+        for (int32_t q = 0; q < vectors; q += 2) {
+            const int V = q + 1 < vectors ? 2 : 1;
+            for (int j = 0; j < V; j++) R.v[j] = f->vector[q + j] + row;
+            update_rows(&R, V, q == 0);
+            R.m += STEP * V * BLOCK;
+        }
+        if (vectors > 0) f->journal += tile_journal(doubles, columns);
+        if (f->solution) {
+            R.v[0] = f->solution + row;
+            R.m = z;
+            solve_rows(&R);
+        }
+        i += doubles;
+    }
+}
+
+int32_t KERNEL(qc__update_front)(qc__update_front *f) {
+    double z[3 * BLOCK];
+    for (int64_t k = f->solution ? 0 : f->k0; k < f->w;) {
+        const int64_t limit = k < f->k0 ? f->k0 : f->w;
+        const int64_t end = limit - k < BLOCK ? limit : k + BLOCK;
+        const int32_t vectors = k < f->k0 ? 0 : f->vectors;
+        double *old = f->journal;
+        if (vectors > 0) f->journal += block_journal(end - k);
+        for (int32_t q = 0; q < vectors; q += 2) {
+            double *m = f->multipliers + STEP * BLOCK * q;
+            const int32_t bad = q + 1 < vectors ? update_pair(f, k, end, q, m, q ? NULL : old)
+                                                : update_one(f, k, end, q, m, q ? NULL : old);
+            if (bad >= 0 && q == 0) save_rest(f, k, bad, end, old);
+            if (bad >= 0) return bad;
+        }
+        if (f->solution) solve_any(f, k, end, z);
+        rows_below(f, k, end, vectors, z);
+        k = end;
+    }
+    return -1;
+}
+
+void KERNEL(qc__restore_front)(int64_t r, int64_t w, int64_t k0, double *panel,
+                               const double *journal, const double *stop) {
+    for (int64_t k = k0; k < w && journal < stop;) {
+        const int64_t end = w - k < BLOCK ? w : k + BLOCK;
+        journal = restore_block(panel, r, k, end, journal);
+        for (int64_t i = NC * end; i < NC * r && journal < stop;) {
+            const int64_t n = tile_size(NC * r - i);
+            const tile R = {
+                .x = panel + NC * k * r + i, .ld = NC * r, .columns = end - k, .doubles = n};
+            restore_rows(&R, journal);
+            journal += tile_journal(n, end - k);
+            i += n;
+        }
+        k = end;
+    }
+}
