@@ -20,6 +20,7 @@ void qc__forward_free(qc__forward *forward) {
     if (!forward) return;
     qc__free(forward->b);
     qc__free(forward->z);
+    qc__free(forward->work);
     qc__free(forward->contribution);
     qc__free(forward->energy);
     qc__free(forward->root);

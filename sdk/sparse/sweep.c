@@ -60,7 +60,8 @@ static qc_status find_start(qc_ctx *ctx, const qc_symbolic *S, const qc__change 
 
 static qc_status allocate(qc_ctx *ctx, sweep *W) {
     struct qc__modify *M = W->M;
-    const int64_t k = W->change->vectors, front = W->nc * W->F->S->plan.largest_front;
+    const int64_t k = W->change->vectors > 0 ? W->change->vectors : 1,
+                  front = W->nc * W->F->S->plan.largest_front;
     const int64_t half = (front + 7) / 8 * 8;
     if (!qc__reserve(ctx, (void **)&M->item, &M->items, 5 * k, sizeof *M->item) ||
         !qc__reserve(ctx, (void **)&M->pointer, &M->pointers, 4 * k, sizeof *M->pointer) ||
