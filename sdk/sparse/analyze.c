@@ -10,6 +10,7 @@ void qc_symbolic_free(qc_symbolic *S) {
                       S->a_row,   S->entry,   S->from,  S->to};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) qc__free(arrays[i]);
     qc__plan_free(&S->plan);
+    qc__free(S->solve.node);
     qc__free(S);
 }
 
@@ -195,6 +196,7 @@ static qc_status analyze(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *o
     if (status == QC_OK) status = fill_relative(ctx, S);
     if (status == QC_OK) status = map_entries(ctx, A, S);
     if (status == QC_OK) status = qc__plan_create(ctx, S);
+    if (status == QC_OK) status = qc__solve_plan_create(ctx, S);
     if (status == QC_OK && !qc__progress(ctx, 1.0)) status = QC_ERR_CANCELLED;
     qc__free(work);
     return status;

@@ -9,7 +9,7 @@ qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t component
     F->S = qc__symbolic_retain(S);
     F->components = components;
     F->kernels = qc__kernels_for(qc__ctx_isa(ctx), components);
-    F->values = QC__NEW(ctx, double, components * S->panel[S->nsuper]);
+    F->values = QC__NEW(ctx, double, components *(S->panel[S->nsuper] + QC__SOLVE_PAD));
     F->D = QC__NEW(ctx, double, S->n);
     F->diagonal = QC__NEW(ctx, double, S->n);
     if (!F->values || !F->D || !F->diagonal) {

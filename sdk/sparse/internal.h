@@ -57,6 +57,25 @@ qc__workspace *qc__workspace_create(qc_ctx *ctx, const qc__plan *plan, int32_t c
                                     uint32_t workers);
 void qc__workspace_free(qc__workspace *space); /* NULL is fine */
 
+/* One supernode in a solve: w own columns from `first` on, m rows below. In a forward solve the
+ * updates of its children add up to r = w + m rows at `sum` on the stack of the worker; its own
+ * update goes into the sum of its parent, or, where it leaves its task, to a slot of m rows. */
+typedef struct qc__solve_node {
+    int64_t panel, below; /* offsets in values; in rows and relative of the rows below */
+    int64_t sum, to;      /* rows; to: sum of the parent, or slot in the area */
+    int32_t first, w, m;
+    bool leaves, top; /* the task of its parent differs; is above all tasks: children have slots */
+} qc__solve_node;
+
+/* In rows: stack of a worker, zero between supernodes; area of a block; one vector of a supernode.
+ */
+typedef struct qc__solve_plan {
+    qc__solve_node *node; /* nsuper */
+    int64_t stack, area, work;
+    const int32_t *top; /* supernodes above all tasks, ascending: borrowed from qc__plan */
+    int32_t ntop;
+} qc__solve_plan;
+
 struct qc_symbolic {
     atomic_int references;
     int32_t n, nsuper;
@@ -75,6 +94,7 @@ struct qc_symbolic {
     uint32_t *from; /* position in A                                                      */
     int32_t *to;    /* offset in the panel, ~offset when conjugated */
     qc__plan plan;
+    qc__solve_plan solve;
     int64_t nnz_l;
     double flops;
 };
@@ -128,6 +148,12 @@ qc_status qc__supernodes(qc_ctx *ctx, qc_symbolic *S, const int32_t *parent, con
 /* plan.c */
 qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S);
 void qc__plan_free(qc__plan *plan);
+
+/* solve_plan.c, after plan.c */
+qc_status qc__solve_plan_create(qc_ctx *ctx, qc_symbolic *S);
+static inline int64_t qc__rows_below(const qc_symbolic *S, int32_t s) {
+    return S->rowptr[s + 1] - S->rowptr[s] - (S->super[s + 1] - S->super[s]);
+}
 
 /* analyze.c */
 qc_symbolic *qc__symbolic_retain(const qc_symbolic *S);

@@ -101,10 +101,26 @@ QC_API qc_status qc_solve_real(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, do
 QC_API qc_status qc_solve_forward(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, qc_complex *x);
 QC_API qc_status qc_solve_forward_real(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, double *x);
 
-/* Forward solve of one sparse right-hand side with nb entries: only the supernodes on the paths to
- * the root are visited. y: n, every entry is written. */
+/* Forward solve of one sparse right-hand side b (nb entries at `row`; equal rows add) at the cost
+ * of its reach, whatever n is: y can differ from zero only on the paths from `row` to the roots of
+ * the elimination tree. *count gets the number of those entries; capacity 0 asks for it alone
+ * (index and y may be NULL). index: elimination positions, ascending; y: the values there, as of
+ * qc_solve_forward. Errors: ARGUMENT (also: capacity < *count, which is set), NOMEM. */
 QC_API qc_status qc_solve_forward_sparse(qc_ctx *ctx, const qc_factor *F, int32_t nb,
-                                         const int32_t *row, const qc_complex *b, qc_complex *y);
+                                         const int32_t *row, const qc_complex *b, int32_t capacity,
+                                         int32_t *index, qc_complex *y, int32_t *count);
+QC_API qc_status qc_solve_forward_sparse_real(qc_ctx *ctx, const qc_factor *F, int32_t nb,
+                                              const int32_t *row, const double *b, int32_t capacity,
+                                              int32_t *index, double *y, int32_t *count);
+
+/* Entries want[0..nx) of A^{-1} b, b sparse as above, at the cost of the paths from `row` and
+ * `want`: x[k] = (A^{-1} b)_{want[k]}. For example single entries of the inverse. */
+QC_API qc_status qc_solve_entries(qc_ctx *ctx, const qc_factor *F, int32_t nb, const int32_t *row,
+                                  const qc_complex *b, int32_t nx, const int32_t *want,
+                                  qc_complex *x);
+QC_API qc_status qc_solve_entries_real(qc_ctx *ctx, const qc_factor *F, int32_t nb,
+                                       const int32_t *row, const double *b, int32_t nx,
+                                       const int32_t *want, double *x);
 
 /* Solve followed by `steps` rounds of iterative refinement with A. x enters as b, leaves as the
  * solution; *residual (may be NULL) gets max|b - A x| / (max|A| max|x| + max|b|). */

@@ -35,6 +35,27 @@ static inline int64_t qc__update_journal(int32_t components, int64_t r, int64_t 
  * are a block of at most QC__FRONT_BLOCK whose earlier blocks are subtracted. */
 enum { QC__FRONT_BLOCK = 48, QC__TILE_LANES = 24 /* doubles of a row tile, at most */ };
 
+/* A block of right-hand sides during a solve: one, or up to QC__BLOCK. */
+enum { QC__BLOCK = 8, QC__SOLVE_PAD = 8 };
+typedef struct qc__sweep {
+    const struct qc_factor *F;
+    double *x; /* n x columns, overwritten */
+    int64_t columns;
+    double *Y, *area; /* n rows of 1 or QC__BLOCK columns, permuted; update vectors */
+} qc__sweep;
+
+/* load: Y <- P x, store: x <- P^T Y, store_scaled: x <- D^{-1/2} Y, each for a range of rows (which
+ * index x in load_block and in store, Y otherwise).
+ * forward: Y <- L^{-1} Y, backward: Y <- L^{-H} D^{-1} Y for the supernodes [first, last].
+ * work: 3 solve.work + solve.stack rows, the last ones zero before and after. */
+typedef void qc__solve_rows(const qc__sweep *B, int64_t begin, int64_t end);
+typedef void qc__solve_nodes(const qc__sweep *B, double *work, int32_t first, int32_t last);
+typedef struct qc__solve_kernels {
+    qc__solve_rows *load;
+    qc__solve_nodes *forward, *backward;
+    qc__solve_rows *store, *store_scaled;
+} qc__solve_kernels;
+
 typedef struct qc__kernels {
     int32_t components; /* 1 real, 2 complex */
     int32_t blas_width; /* BLAS is faster for fronts with this many columns */
@@ -60,6 +81,12 @@ typedef struct qc__kernels {
     /* Writes the journal of one front back: the doubles [journal, end). */
     void (*restore_front)(int64_t r, int64_t w, int64_t k0, double *panel, const double *journal,
                           const double *end);
+    qc__solve_kernels solve[2]; /* solve_single.c, solve_block.c */
+    /* solve_single.c, one supernode with own values x and m rows below: x <- L11^{-1} x, then
+     * u = -L21 x; and x <- L11^{-H} (x / D - L21^H t). x and u may be overwritten up to
+     * QC__SOLVE_PAD rows past their end. */
+    void (*forward_panel)(const struct qc_factor *F, int32_t s, double *x, double *u);
+    void (*backward_panel)(const struct qc_factor *F, int32_t s, const double *t, double *x);
 } qc__kernels;
 
 /* The table for one instruction set; components: 1 real, 2 complex. */
@@ -86,6 +113,12 @@ void KERNEL(qc__restore_front)(int64_t r, int64_t w, int64_t k0, double *panel,
 #else
 #define NC 2
 #endif
+qc__solve_nodes KERNEL(qc__forward_single), KERNEL(qc__backward_single);
+qc__solve_nodes KERNEL(qc__forward_block), KERNEL(qc__backward_block);
+qc__solve_rows KERNEL(qc__load_single), KERNEL(qc__store_single), KERNEL(qc__store_scaled_single);
+qc__solve_rows KERNEL(qc__load_block), KERNEL(qc__store_block), KERNEL(qc__store_scaled_block);
+void KERNEL(qc__forward_panel)(const struct qc_factor *F, int32_t s, double *x, double *u);
+void KERNEL(qc__backward_panel)(const struct qc_factor *F, int32_t s, const double *t, double *x);
 #endif
 
 #endif

@@ -20,4 +20,10 @@ const qc__kernels KERNEL(qc__kernels) = {
     .front_subtract = KERNEL(qc__front_subtract),
     .update_front = KERNEL(qc__update_front),
     .restore_front = KERNEL(qc__restore_front),
+    .solve = {{KERNEL(qc__load_single), KERNEL(qc__forward_single), KERNEL(qc__backward_single),
+               KERNEL(qc__store_single), KERNEL(qc__store_scaled_single)},
+              {KERNEL(qc__load_block), KERNEL(qc__forward_block), KERNEL(qc__backward_block),
+               KERNEL(qc__store_block), KERNEL(qc__store_scaled_block)}},
+    .forward_panel = KERNEL(qc__forward_panel),
+    .backward_panel = KERNEL(qc__backward_panel),
 };

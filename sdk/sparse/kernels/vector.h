@@ -57,7 +57,7 @@ static inline vec v_swap(vec x) {
     return _mm512_permute_pd(x, 0x55);
 }
 static inline vec v_alternate(double x) {
-    return _mm512_set_pd(x, -x, x, -x, x, -x, x, -x);
+    return _mm512_xor_pd(_mm512_set1_pd(x), _mm512_set_pd(0, -0.0, 0, -0.0, 0, -0.0, 0, -0.0));
 }
 static inline vec v_pair(const double *p) { /* p[0], p[1], p[0], p[1], ... */
     return _mm512_broadcast_f64x2(_mm_loadu_pd(p));
@@ -79,6 +79,48 @@ static inline double v_first(vec x) {
 }
 static inline double v_sum(vec x) {
     return _mm512_reduce_add_pd(x);
+}
+
+/* out[0..3] = sums of the lanes of a, b, c, d */
+static inline void v_sum_four(vec a, vec b, vec c, vec d, double *out) {
+    const vec ab = _mm512_add_pd(_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+    const vec cd = _mm512_add_pd(_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+    const __m256d x = _mm256_add_pd(_mm512_castpd512_pd256(ab), _mm512_extractf64x4_pd(ab, 1));
+    const __m256d y = _mm256_add_pd(_mm512_castpd512_pd256(cd), _mm512_extractf64x4_pd(cd, 1));
+    _mm256_storeu_pd(
+        out, _mm256_add_pd(_mm256_permute2f128_pd(x, y, 0x20), _mm256_permute2f128_pd(x, y, 0x31)));
+}
+static inline vec v_inverse_root(vec x) { /* x^{-1/2} */
+    return _mm512_div_pd(_mm512_set1_pd(1), _mm512_sqrt_pd(x));
+}
+/* The pairs p[2 i[0]], p[2 i[1]], ... which fill a vector */
+static inline vec v_gather_pairs(const double *p, const int32_t *i) {
+    const __m256d lo =
+        _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p + 2 * (int64_t)i[0])),
+                             _mm_loadu_pd(p + 2 * (int64_t)i[1]), 1);
+    const __m256d hi =
+        _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p + 2 * (int64_t)i[2])),
+                             _mm_loadu_pd(p + 2 * (int64_t)i[3]), 1);
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(lo), hi, 1);
+}
+/* lo = a0 b0 a2 b2 ..., hi = a1 b1 a3 b3 ...; applied to lo, hi it gives a, b */
+static inline void v_interleave(vec a, vec b, vec *lo, vec *hi) {
+    *lo = _mm512_unpacklo_pd(a, b);
+    *hi = _mm512_unpackhi_pd(a, b);
+}
+/* Transposes LANES / 2 vectors of as many pairs. */
+static inline void v_transpose_pairs(vec *x) {
+    const vec a = _mm512_shuffle_f64x2(x[0], x[1], 0x44),
+              b = _mm512_shuffle_f64x2(x[0], x[1], 0xee);
+    const vec c = _mm512_shuffle_f64x2(x[2], x[3], 0x44),
+              d = _mm512_shuffle_f64x2(x[2], x[3], 0xee);
+    x[0] = _mm512_shuffle_f64x2(a, c, 0x88);
+    x[1] = _mm512_shuffle_f64x2(a, c, 0xdd);
+    x[2] = _mm512_shuffle_f64x2(b, d, 0x88);
+    x[3] = _mm512_shuffle_f64x2(b, d, 0xdd);
+}
+static inline vec v_gather(const double *p, const int32_t *i) {
+    return _mm512_set_pd(p[i[7]], p[i[6]], p[i[5]], p[i[4]], p[i[3]], p[i[2]], p[i[1]], p[i[0]]);
 }
 
 #elif defined(QC__ISA_AVX2)
@@ -122,7 +164,7 @@ static inline vec v_swap(vec x) {
     return _mm256_permute_pd(x, 0x5);
 }
 static inline vec v_alternate(double x) {
-    return _mm256_set_pd(x, -x, x, -x);
+    return _mm256_xor_pd(_mm256_set1_pd(x), _mm256_set_pd(0, -0.0, 0, -0.0));
 }
 static inline vec v_pair(const double *p) {
     return _mm256_broadcast_pd((const __m128d *)(const void *)p);
@@ -148,6 +190,31 @@ static inline double v_first(vec x) {
 static inline double v_sum(vec x) {
     const __m128d half = _mm_add_pd(_mm256_castpd256_pd128(x), _mm256_extractf128_pd(x, 1));
     return _mm_cvtsd_f64(_mm_add_sd(half, _mm_unpackhi_pd(half, half)));
+}
+
+static inline void v_sum_four(vec a, vec b, vec c, vec d, double *out) {
+    const vec ab = _mm256_hadd_pd(a, b), cd = _mm256_hadd_pd(c, d);
+    _mm256_storeu_pd(out, _mm256_add_pd(_mm256_permute2f128_pd(ab, cd, 0x20),
+                                        _mm256_permute2f128_pd(ab, cd, 0x31)));
+}
+static inline vec v_inverse_root(vec x) {
+    return _mm256_div_pd(_mm256_set1_pd(1), _mm256_sqrt_pd(x));
+}
+static inline vec v_gather_pairs(const double *p, const int32_t *i) {
+    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p + 2 * (int64_t)i[0])),
+                                _mm_loadu_pd(p + 2 * (int64_t)i[1]), 1);
+}
+static inline void v_interleave(vec a, vec b, vec *lo, vec *hi) {
+    *lo = _mm256_unpacklo_pd(a, b);
+    *hi = _mm256_unpackhi_pd(a, b);
+}
+static inline void v_transpose_pairs(vec *x) {
+    const vec a = x[0], b = x[1];
+    x[0] = _mm256_permute2f128_pd(a, b, 0x20);
+    x[1] = _mm256_permute2f128_pd(a, b, 0x31);
+}
+static inline vec v_gather(const double *p, const int32_t *i) {
+    return _mm256_set_pd(p[i[3]], p[i[2]], p[i[1]], p[i[0]]);
 }
 
 #else
@@ -214,6 +281,49 @@ static inline double v_first(vec x) {
 static inline double v_sum(vec x) {
     return x.a + x.b;
 }
+static inline void v_sum_four(vec a, vec b, vec c, vec d, double *out) {
+    out[0] = v_sum(a);
+    out[1] = v_sum(b);
+    out[2] = v_sum(c);
+    out[3] = v_sum(d);
+}
+static inline vec v_inverse_root(vec x) {
+    return (vec){1 / sqrt(x.a), 1 / sqrt(x.b)};
+}
+static inline vec v_gather_pairs(const double *p, const int32_t *i) {
+    return v_load(p + 2 * (int64_t)i[0]);
+}
+static inline void v_interleave(vec a, vec b, vec *lo, vec *hi) {
+    *lo = (vec){a.a, b.a};
+    *hi = (vec){a.b, b.b};
+}
+static inline void v_transpose_pairs(vec *x) {
+    (void)x;
+}
+static inline vec v_gather(const double *p, const int32_t *i) {
+    return (vec){p[i[0]], p[i[1]]};
+}
 #endif
+
+/* Asks for the cache line at p, which may lie outside of any array. */
+static inline void v_prefetch(const double *p) {
+#if defined(__GNUC__)
+    __builtin_prefetch(p);
+#else
+    (void)p;
+#endif
+}
+
+/* The same operations on single numbers, fused exactly where those on vectors are. */
+static inline double s_fma(double x, double y, double z) {
+#if defined(QC__ISA_AVX512) || defined(QC__ISA_AVX2)
+    return fma(x, y, z);
+#else
+    return x * y + z;
+#endif
+}
+static inline double s_fnma(double x, double y, double z) {
+    return s_fma(-x, y, z);
+}
 
 #endif

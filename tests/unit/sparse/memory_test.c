@@ -27,6 +27,7 @@ static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
     int32_t row[2] = {M->row[M->colptr[5]], 5};
     const qc_complex w[2] = {{0.1, 0.2}, {0.3, 0}};
     qc_complex *x = calloc((size_t)M->n * 12, sizeof *x);
+    int32_t *index = malloc((size_t)M->n * sizeof *index), count;
     x[3].re = 1;
     qc_status status = qc_analyze(ctx, &A, NULL, &S);
     assert_true((status == QC_OK) == (S != NULL));
@@ -41,10 +42,13 @@ static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
     }
     if (status == QC_OK) status = qc_solve(ctx, F, 1, x);
     if (status == QC_OK) status = qc_solve(ctx, F, 12, x);
-    if (status == QC_OK) status = qc_solve_forward_sparse(ctx, F, 2, row, w, x);
+    if (status == QC_OK)
+        status = qc_solve_forward_sparse(ctx, F, 2, row, w, M->n, index, x, &count);
+    if (status == QC_OK) status = qc_solve_entries(ctx, F, 2, row, w, 2, row, x);
     if (status == QC_OK) status = qc_solve_refined(ctx, F, &A, 1, x, NULL);
     qc_factor_free(F);
     free(x);
+    free(index);
     return status;
 }
 

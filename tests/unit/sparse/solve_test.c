@@ -1,5 +1,5 @@
-/* Residuals, blocks of right-hand sides, the forward identity, sparse forward solves, refinement.
- */
+/* Residuals, blocks of right-hand sides, equal bits for any number of
+ * threads, the forward identity, refinement. */
 #include "support.h"
 
 static qc_complex *random_vectors(int64_t count) {
@@ -19,65 +19,120 @@ static double residual(const cplx *A, int64_t n, const qc_complex *x, const qc_c
     return max / largest;
 }
 
+/* Column q of a block does not depend on the other columns, and forward not even on there being a
+ * block. */
+static void check_complex(qc_ctx *ctx, const test_matrix *M, const cplx *A, int32_t nrhs) {
+    const int64_t n = M->n;
+    qc_factor *F = factor_of(ctx, M, NULL);
+    qc_complex *b = random_vectors(n * nrhs), *x = random_vectors(n * nrhs), one[2 * 200];
+    if (nrhs) memcpy(x, b, (size_t)(n * nrhs) * sizeof *x);
+    assert_int_equal(qc_solve(ctx, F, nrhs, x), QC_OK);
+    for (int64_t k = 0; k < nrhs; k++) {
+        assert_true(residual(A, n, x + k * n, b + k * n) < 1e-13);
+        const int32_t alone = nrhs == 1 ? 1 : 2;
+        memcpy(one, b + k * n, (size_t)n * sizeof *one);
+        memcpy(one + n, b, (size_t)n * sizeof *one);
+        assert_int_equal(qc_solve(ctx, F, alone, one), QC_OK);
+        assert_memory_equal(one, x + k * n, (size_t)n * sizeof *one);
+    }
+    if (nrhs) memcpy(x, b, (size_t)(n * nrhs) * sizeof *x);
+    assert_int_equal(qc_solve_forward(ctx, F, nrhs, x), QC_OK);
+    for (int64_t k = 0; k < nrhs; k++) {
+        memcpy(one, b + k * n, (size_t)n * sizeof *one);
+        assert_int_equal(qc_solve_forward(ctx, F, 1, one), QC_OK);
+        assert_memory_equal(one, x + k * n, (size_t)n * sizeof *one);
+    }
+    free(b);
+    free(x);
+    qc_factor_free(F);
+}
+
 static void complex_solves(void **state) {
     (void)state;
-    qc_ctx *ctx = new_ctx(2);
-    for (int shape = 0; shape < SHAPES; shape++) {
-        test_matrix M = make_matrix(shape, 130, 0.2);
-        const int64_t n = M.n;
-        cplx *A = dense_of(&M, false);
-        qc_factor *F = factor_of(ctx, &M, NULL);
-        for (int32_t nrhs = 0; nrhs <= 19; nrhs += nrhs < 2 ? 1 : 7) {
-            qc_complex *b = random_vectors(n * nrhs), *x = random_vectors(n * nrhs), one[200];
-            if (nrhs) memcpy(x, b, (size_t)(n * nrhs) * sizeof *x);
-            assert_int_equal(qc_solve(ctx, F, nrhs, x), QC_OK);
-            for (int64_t k = 0; k < nrhs; k++) {
-                assert_true(residual(A, n, x + k * n, b + k * n) < 1e-13);
-                memcpy(one, b + k * n, (size_t)n * sizeof *one); /* a block changes no bit */
-                assert_int_equal(qc_solve(ctx, F, 1, one), QC_OK);
-                assert_memory_equal(one, x + k * n, (size_t)n * sizeof *one);
-            }
-            free(b);
-            free(x);
+    for (size_t set = 0; set < 3; set++) {
+        qc_ctx *ctx = new_ctx_with(2, instruction_sets[set]);
+        if (!ctx) continue;
+        for (int shape = 0; shape < SHAPES; shape++) {
+            test_matrix M = make_matrix(shape, 130, 0.2);
+            cplx *A = dense_of(&M, false);
+            for (int32_t nrhs = 0; nrhs <= 40; nrhs += nrhs < 3 ? 1 : nrhs < 10 ? 5 : 16)
+                check_complex(ctx, &M, A, nrhs);
+            free(A);
+            free_matrix(&M);
         }
-        qc_factor_free(F);
-        free(A);
-        free_matrix(&M);
+        qc_ctx_free(ctx);
     }
-    qc_ctx_free(ctx);
+}
+
+static void check_real(qc_ctx *ctx, const test_matrix *M, const cplx *A, int32_t nrhs) {
+    const int64_t n = M->n;
+    qc_factor *F = real_factor_of(ctx, M, NULL);
+    double *b = malloc((size_t)(n * nrhs) * 8), *x = malloc((size_t)(n * nrhs) * 8), y[200];
+    for (int64_t i = 0; i < nrhs * n; i++) x[i] = b[i] = uniform();
+    assert_int_equal(qc_solve_real(ctx, F, nrhs, x), QC_OK);
+    for (int64_t k = 0; k < nrhs; k++) {
+        double energy = 0, norm = 0;
+        for (int64_t i = 0; i < n; i++) {
+            cplx sum = -b[k * n + i];
+            for (int64_t j = 0; j < n; j++) sum += A[i + j * n] * x[k * n + j];
+            assert_true(cabs(sum) < 1e-12);
+            energy += b[k * n + i] * x[k * n + i];
+        }
+        memcpy(y, b + k * n, (size_t)n * sizeof *y);
+        assert_int_equal(qc_solve_forward_real(ctx, F, 1, y), QC_OK);
+        for (int64_t i = 0; i < n; i++) norm += y[i] * y[i];
+        assert_true(fabs(norm - energy) <= 1e-13 * energy);
+    }
+    free(b);
+    free(x);
+    qc_factor_free(F);
 }
 
 static void real_solves(void **state) {
     (void)state;
-    qc_ctx *ctx = new_ctx(1);
-    for (int shape = 0; shape < SHAPES; shape++) {
-        test_matrix M = make_matrix(shape, 130, 0.2);
-        const int64_t n = M.n;
-        cplx *A = dense_of(&M, true);
-        qc_factor *F = real_factor_of(ctx, &M, NULL);
-        double *b = malloc((size_t)n * 80), *x = malloc((size_t)n * 80), y[200];
-        for (int64_t i = 0; i < 10 * n; i++) x[i] = b[i] = uniform();
-        assert_int_equal(qc_solve_real(ctx, F, 10, x), QC_OK);
-        for (int64_t k = 0; k < 10; k++) {
-            double energy = 0, norm = 0;
-            for (int64_t i = 0; i < n; i++) {
-                cplx sum = -b[k * n + i];
-                for (int64_t j = 0; j < n; j++) sum += A[i + j * n] * x[k * n + j];
-                assert_true(cabs(sum) < 1e-12);
-                energy += b[k * n + i] * x[k * n + i];
-            }
-            memcpy(y, b + k * n, (size_t)n * sizeof *y);
-            assert_int_equal(qc_solve_forward_real(ctx, F, 1, y), QC_OK);
-            for (int64_t i = 0; i < n; i++) norm += y[i] * y[i];
-            assert_true(fabs(norm - energy) <= 1e-13 * energy);
+    for (size_t set = 0; set < 3; set++) {
+        qc_ctx *ctx = new_ctx_with(1, instruction_sets[set]);
+        if (!ctx) continue;
+        for (int shape = 0; shape < SHAPES; shape++) {
+            test_matrix M = make_matrix(shape, 130, 0.2);
+            cplx *A = dense_of(&M, true);
+            for (int32_t nrhs = 1; nrhs <= 17; nrhs += 8) check_real(ctx, &M, A, nrhs);
+            free(A);
+            free_matrix(&M);
         }
-        free(b);
-        free(x);
-        qc_factor_free(F);
-        free(A);
-        free_matrix(&M);
+        qc_ctx_free(ctx);
     }
-    qc_ctx_free(ctx);
+}
+
+/* A tree of several tasks: the same bits for any number of threads, one or many right-hand sides,
+ * and forward no difference between them. */
+static void threads_change_no_bit(void **state) {
+    (void)state;
+    test_matrix M = make_matrix(GRID, 6400, 0.01);
+    const int64_t n = M.n;
+    qc_complex *b = random_vectors(20 * n), *x = random_vectors(20 * n),
+               *y = random_vectors(20 * n);
+    for (size_t set = 0; set < 3; set++)
+        for (int32_t nrhs = 1; nrhs <= 20; nrhs += 19)
+            for (int forward = 0; forward < 2; forward++)
+                for (uint32_t threads = 1; threads <= 4; threads += 3) {
+                    qc_ctx *ctx = new_ctx_with(threads, instruction_sets[set]);
+                    if (!ctx) continue;
+                    qc_factor *F = factor_of(ctx, &M, NULL);
+                    assert_true(F->S->plan.ntask > 1);
+                    memcpy(y, b, (size_t)(nrhs * n) * sizeof *y);
+                    assert_int_equal(forward ? qc_solve_forward(ctx, F, nrhs, y)
+                                             : qc_solve(ctx, F, nrhs, y),
+                                     QC_OK);
+                    if (threads > 1) assert_memory_equal(x, y, (size_t)(nrhs * n) * sizeof *y);
+                    memcpy(x, y, (size_t)(nrhs * n) * sizeof *y);
+                    qc_factor_free(F);
+                    qc_ctx_free(ctx);
+                }
+    free(b);
+    free(x);
+    free(y);
+    free_matrix(&M);
 }
 
 /* B^H A^{-1} C = Y_B^H Y_C (thesis 6.2.1) */
@@ -105,38 +160,6 @@ static void forward_identity(void **state) {
     free(y);
     qc_factor_free(F);
     free_matrix(&M);
-    qc_ctx_free(ctx);
-}
-
-static void sparse_forward_equals_dense_forward(void **state) {
-    (void)state;
-    qc_ctx *ctx = new_ctx(1);
-    for (int shape = 0; shape < SHAPES; shape++) {
-        test_matrix M = make_matrix(shape, 150, 0.2);
-        qc_factor *F = factor_of(ctx, &M, NULL);
-        for (int32_t nb = 0; nb < 6; nb++) {
-            int32_t row[6];
-            qc_complex b[6], y[200], dense[200];
-            memset(dense, 0, sizeof dense);
-            for (int32_t p = 0; p < nb; p++) {
-                row[p] = pick(M.n); /* may repeat: entries add */
-                b[p] = (qc_complex){uniform(), uniform()};
-                dense[row[p]].re += b[p].re;
-                dense[row[p]].im += b[p].im;
-            }
-            for (int32_t i = 0; i < M.n; i++) y[i] = (qc_complex){NAN, NAN};
-            assert_int_equal(qc_solve_forward_sparse(ctx, F, nb, row, b, y), QC_OK);
-            assert_int_equal(qc_solve_forward(ctx, F, 1, dense), QC_OK);
-            for (int32_t i = 0; i < M.n; i++)
-                assert_true(y[i].re == dense[i].re && y[i].im == dense[i].im);
-        }
-        const int32_t outside = M.n;
-        const qc_complex one = {1, 0};
-        qc_complex y[200];
-        assert_int_equal(qc_solve_forward_sparse(ctx, F, 1, &outside, &one, y), QC_ERR_ARGUMENT);
-        qc_factor_free(F);
-        free_matrix(&M);
-    }
     qc_ctx_free(ctx);
 }
 
@@ -182,8 +205,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(complex_solves),
         cmocka_unit_test(real_solves),
+        cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(forward_identity),
-        cmocka_unit_test(sparse_forward_equals_dense_forward),
         cmocka_unit_test(refinement_reaches_roundoff),
         cmocka_unit_test(kinds_do_not_mix),
     };
