@@ -105,7 +105,6 @@ typedef struct bench_samples {
     bench_duration *value;
 } bench_samples;
 bench_duration bench_clock(void);
-double bench_wall(void); /* quick to read */
 void bench_sample(bench_samples *s, bench_duration d);
 bench_duration bench_median(const bench_samples *s);
 

@@ -10,10 +10,6 @@ static double read_clock(clockid_t id) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-double bench_wall(void) {
-    return read_clock(CLOCK_MONOTONIC);
-}
-
 bench_duration bench_clock(void) {
     return (bench_duration){read_clock(CLOCK_MONOTONIC), read_clock(CLOCK_THREAD_CPUTIME_ID)};
 }

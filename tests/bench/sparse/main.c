@@ -46,8 +46,8 @@ static void one_thread_in_peers(char **argv) {
 }
 
 /* Meshes of 7k, 20k, 69k, 86k, 346k and 1.4M faces among the test data. */
-static const char *const standard[] = {"bunny.off",     "rocker-arm.obj",  "stanford-bunny.obj",
-                                       "armadillo.obj", "armadillo.obj:1", "armadillo.obj:2"};
+static const char *const standard[] = {"bunny.off",       "rocker-arm.obj",  "stanford-bunny.obj",
+                                       "armadillo.obj:0", "armadillo.obj:1", "armadillo.obj:2"};
 enum { STANDARD = sizeof standard / sizeof *standard };
 
 static int32_t count_meshes(const bench_arguments *a) {
@@ -72,7 +72,7 @@ static bool mesh_spec(const bench_arguments *a, int32_t i, char spec[TEST_DATA_P
 }
 
 static int32_t flips_for(int32_t faces) {
-    return faces < 100000 ? 200 : faces < 500000 ? 50 : 10;
+    return faces < 100000 ? 200 : faces < 500000 ? 50 : 30;
 }
 
 /* Returns false when --only leaves it out. */

@@ -65,6 +65,23 @@ static void apply_flip(void *self, const bench_flip *f, int direction) {
     bench_check(s->ctx, qc_flip(s->ctx, s->F, f->row[0], f->row[1], dl, f->row[2], dm));
 }
 
+static void undo(void *self) {
+    state *s = self;
+    bench_check(s->ctx, qc_factor_rollback(s->ctx, s->F));
+}
+
+static void carry(void *self, const qc_complex *b) {
+    state *s = self;
+    bench_check(s->ctx, b ? qc_forward_attach(s->ctx, s->F, b) : qc_forward_detach(s->ctx, s->F));
+}
+
+static double energy(void *self) {
+    state *s = self;
+    double result = 0;
+    bench_check(s->ctx, qc_forward_energy(s->ctx, s->F, &result));
+    return result;
+}
+
 static double stored(void *self) {
     const state *s = self;
     qc_symbolic_info info = QC_SYMBOLIC_INFO_INIT;
@@ -87,8 +104,8 @@ static void destroy(void *self) {
 }
 
 const bench_peer peer_quadcover = {"QuadCover", create, analyze,    factor, refactor,
-                                   forward,     solve,  apply_flip, NULL,   NULL,
-                                   NULL,        stored, drop,       destroy};
+                                   forward,     solve,  apply_flip, undo,   carry,
+                                   energy,      stored, drop,       destroy};
 
 void order_quadcover(const bench_matrix *M, int ordering, int32_t *perm) {
     const qc_analyze_options options = ordering_options(ordering, NULL);
