@@ -13,7 +13,7 @@ typedef struct run {
     const qc_symbolic *S;
     bool forward_only;
     int64_t blocks; /* of this round */
-    qc__sweep *block;
+    qc__rhs_block *block;
     double **work; /* by worker */
 } run;
 
@@ -95,11 +95,12 @@ static bool allocate(qc_ctx *ctx, const qc_factor *F, round_shape shape, run *R,
     const int64_t own = row * (S->n + S->solve.area);
     const int64_t stack = row * (S->solve.stack + 3 * S->solve.work);
     *memory = QC__NEW(ctx, double, own *shape.blocks + stack * shape.threads);
-    R->block = QC__NEW(ctx, qc__sweep, shape.blocks);
+    R->block = QC__NEW(ctx, qc__rhs_block, shape.blocks);
     R->work = QC__NEW(ctx, double *, shape.threads);
     if (!*memory || !R->block || !R->work) return false;
     for (int64_t b = 0; b < shape.blocks; b++)
-        R->block[b] = (qc__sweep){F, NULL, 0, *memory + b * own, *memory + b * own + row * S->n};
+        R->block[b] =
+            (qc__rhs_block){F, NULL, 0, *memory + b * own, *memory + b * own + row * S->n};
     for (int64_t t = 0; t < shape.threads; t++) {
         R->work[t] = *memory + own * shape.blocks + stack * t;
         memset(R->work[t] + 3 * row * S->solve.work, 0,
@@ -113,7 +114,7 @@ static qc_status run_rounds(qc_ctx *ctx, run *R, round_shape shape, bool paralle
     const int64_t ld = R->block->F->components * (int64_t)R->S->n;
     for (int64_t column = 0; column < nrhs;) {
         for (R->blocks = 0; R->blocks < shape.blocks && column < nrhs; R->blocks++) {
-            qc__sweep *B = &R->block[R->blocks];
+            qc__rhs_block *B = &R->block[R->blocks];
             B->x = x + ld * column;
             B->columns = nrhs - column < shape.width ? nrhs - column : shape.width;
             column += B->columns;

@@ -37,19 +37,19 @@ enum { QC__FRONT_BLOCK = 48, QC__TILE_LANES = 24 /* doubles of a row tile, at mo
 
 /* A block of right-hand sides during a solve: one, or up to QC__BLOCK. */
 enum { QC__BLOCK = 8, QC__SOLVE_PAD = 8 };
-typedef struct qc__sweep {
+typedef struct qc__rhs_block {
     const struct qc_factor *F;
     double *x; /* n x columns, overwritten */
     int64_t columns;
     double *Y, *area; /* n rows of 1 or QC__BLOCK columns, permuted; update vectors */
-} qc__sweep;
+} qc__rhs_block;
 
 /* load: Y <- P x, store: x <- P^T Y, store_scaled: x <- D^{-1/2} Y, each for a range of rows (which
  * index x in load_block and in store, Y otherwise).
  * forward: Y <- L^{-1} Y, backward: Y <- L^{-H} D^{-1} Y for the supernodes [first, last].
  * work: 3 solve.work + solve.stack rows, the last ones zero before and after. */
-typedef void qc__solve_rows(const qc__sweep *B, int64_t begin, int64_t end);
-typedef void qc__solve_nodes(const qc__sweep *B, double *work, int32_t first, int32_t last);
+typedef void qc__solve_rows(const qc__rhs_block *B, int64_t begin, int64_t end);
+typedef void qc__solve_nodes(const qc__rhs_block *B, double *work, int32_t first, int32_t last);
 typedef struct qc__solve_kernels {
     qc__solve_rows *load;
     qc__solve_nodes *forward, *backward;

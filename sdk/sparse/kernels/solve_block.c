@@ -95,7 +95,7 @@ static inline void add_row(const double *x, double *y) {
 }
 
 /* Sum of the update vectors which the children left in their slots. */
-static void collect(const qc__sweep *B, int32_t s, double *sum) {
+static void collect(const qc__rhs_block *B, int32_t s, double *sum) {
     const qc_symbolic *S = B->F->S;
     memset(sum, 0, (size_t)(ROW * (S->rowptr[s + 1] - S->rowptr[s])) * sizeof *sum);
     for (int32_t c = S->child[s]; c != -1; c = S->sibling[c]) {
@@ -107,8 +107,8 @@ static void collect(const qc__sweep *B, int32_t s, double *sum) {
 }
 
 /* u: room for one supernode */
-static void forward_supernode(const qc__sweep *B, const qc__solve_node *N, double *sum, double *to,
-                              double *u) {
+static void forward_supernode(const qc__rhs_block *B, const qc__solve_node *N, double *sum,
+                              double *to, double *u) {
     const panel P = panel_of(B->F, N);
     const int32_t *local = B->F->S->relative + N->below;
     double *x = B->Y + ROW * (int64_t)N->first;
@@ -121,7 +121,7 @@ static void forward_supernode(const qc__sweep *B, const qc__solve_node *N, doubl
     memset(sum, 0, (size_t)(ROW * (P.w + P.m)) * sizeof *sum);
 }
 
-void KERNEL(qc__forward_block)(const qc__sweep *B, double *work, int32_t first, int32_t last) {
+void KERNEL(qc__forward_block)(const qc__rhs_block *B, double *work, int32_t first, int32_t last) {
     const qc_symbolic *S = B->F->S;
     const int64_t step = ROW * S->solve.work;
     double *u = work, *top = work + 2 * step, *stack = work + 3 * step;
@@ -159,7 +159,7 @@ static inline void backward_group(const int T, const panel *P, int64_t k, const 
                       NULL, x + ROW * (k + j));
 }
 
-static void backward_supernode(const qc__sweep *B, const qc__solve_node *N) {
+static void backward_supernode(const qc__rhs_block *B, const qc__solve_node *N) {
     const panel P = panel_of(B->F, N);
     const int32_t *below = B->F->S->rows + N->below;
     double *x = B->Y + ROW * (int64_t)N->first;
@@ -175,7 +175,7 @@ static void backward_supernode(const qc__sweep *B, const qc__solve_node *N) {
     for (; k > 0; k--) backward_group(1, &P, k - 1, B->Y, below, x);
 }
 
-void KERNEL(qc__backward_block)(const qc__sweep *B, double *work, int32_t first, int32_t last) {
+void KERNEL(qc__backward_block)(const qc__rhs_block *B, double *work, int32_t first, int32_t last) {
     const qc_symbolic *S = B->F->S;
     (void)work;
     for (int32_t s = last; s >= first; s--) backward_supernode(B, &S->solve.node[s]);
@@ -186,18 +186,18 @@ void KERNEL(qc__backward_block)(const qc__sweep *B, double *work, int32_t first,
  * and imaginary parts of a row, or two real rows. */
 enum { STEP = LANES / NC, PAIRS = LANES / 2, FAR = 8 * STEP };
 
-static inline double *row_of(const qc__sweep *B, int64_t i) {
+static inline double *row_of(const qc__rhs_block *B, int64_t i) {
     return B->Y + ROW * (int64_t)B->F->S->inverse[i];
 }
-static inline double *half_of_pair(const qc__sweep *B, int64_t i, int pair, int half) {
+static inline double *half_of_pair(const qc__rhs_block *B, int64_t i, int pair, int half) {
     return NC == 2 ? row_of(B, i + pair) + half * QC__BLOCK : row_of(B, i + 2 * pair + half);
 }
-static inline void fetch_rows(const qc__sweep *B, int64_t i) {
+static inline void fetch_rows(const qc__rhs_block *B, int64_t i) {
     for (int64_t k = i + FAR; k < i + FAR + STEP && k < B->F->S->n; k++)
         for (int d = 0; d < ROW; d += 8) v_prefetch(row_of(B, k) + d);
 }
 
-static inline void load_step(const qc__sweep *B, int64_t ld, int64_t i) {
+static inline void load_step(const qc__rhs_block *B, int64_t ld, int64_t i) {
     for (int v = 0; v < PART; v++) {
         vec even[PAIRS], odd[PAIRS];
         for (int p = 0; p < PAIRS; p++) {
@@ -216,7 +216,7 @@ static inline void load_step(const qc__sweep *B, int64_t ld, int64_t i) {
     }
 }
 
-static inline void store_step(const qc__sweep *B, int64_t ld, int64_t i) {
+static inline void store_step(const qc__rhs_block *B, int64_t ld, int64_t i) {
     for (int v = 0; v < PART; v++) {
         vec even[PAIRS], odd[PAIRS];
         for (int p = 0; p < PAIRS; p++)
@@ -232,7 +232,7 @@ static inline void store_step(const qc__sweep *B, int64_t ld, int64_t i) {
     }
 }
 
-void KERNEL(qc__load_block)(const qc__sweep *B, int64_t begin, int64_t end) {
+void KERNEL(qc__load_block)(const qc__rhs_block *B, int64_t begin, int64_t end) {
     const int64_t ld = NC * (int64_t)B->F->S->n;
     int64_t i = begin;
     for (; i + STEP <= end; i += STEP) {
@@ -245,7 +245,7 @@ void KERNEL(qc__load_block)(const qc__sweep *B, int64_t begin, int64_t end) {
                 row_of(B, i)[c * QC__BLOCK + q] = q < B->columns ? B->x[q * ld + NC * i + c] : 0;
 }
 
-void KERNEL(qc__store_block)(const qc__sweep *B, int64_t begin, int64_t end) {
+void KERNEL(qc__store_block)(const qc__rhs_block *B, int64_t begin, int64_t end) {
     const int64_t ld = NC * (int64_t)B->F->S->n;
     int64_t i = begin;
     for (; i + STEP <= end; i += STEP) {
@@ -259,7 +259,7 @@ void KERNEL(qc__store_block)(const qc__sweep *B, int64_t begin, int64_t end) {
 }
 
 /* x <- D^{-1/2} Y in elimination order, columns [begin, end) of L */
-void KERNEL(qc__store_scaled_block)(const qc__sweep *B, int64_t begin, int64_t end) {
+void KERNEL(qc__store_scaled_block)(const qc__rhs_block *B, int64_t begin, int64_t end) {
     const int64_t ld = NC * (int64_t)B->F->S->n, columns = B->columns;
     double scale[LANES];
     for (int64_t k = begin; k < end; k += LANES) {

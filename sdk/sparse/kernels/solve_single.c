@@ -79,7 +79,7 @@ static void clear(int64_t n, double *x) {
 }
 
 /* Sum of the update vectors which the children left in their slots. */
-static void collect(const qc__sweep *B, int32_t s, double *sum) {
+static void collect(const qc__rhs_block *B, int32_t s, double *sum) {
     const qc_symbolic *S = B->F->S;
     clear(NC * (S->rowptr[s + 1] - S->rowptr[s]), sum);
     for (int32_t c = S->child[s]; c != -1; c = S->sibling[c]) {
@@ -91,8 +91,8 @@ static void collect(const qc__sweep *B, int32_t s, double *sum) {
 }
 
 /* x, u: room for one supernode */
-static void forward_supernode(const qc__sweep *B, const qc__solve_node *N, double *sum, double *to,
-                              double *x, double *u) {
+static void forward_supernode(const qc__rhs_block *B, const qc__solve_node *N, double *sum,
+                              double *to, double *x, double *u) {
     const panel P = panel_of(B->F, N);
     const int32_t *local = B->F->S->relative + N->below;
     double *Y = B->Y + NC * (int64_t)N->first;
@@ -109,7 +109,7 @@ static void forward_supernode(const qc__sweep *B, const qc__solve_node *N, doubl
     clear(NC * (P.w + P.m), sum);
 }
 
-void KERNEL(qc__forward_single)(const qc__sweep *B, double *work, int32_t first, int32_t last) {
+void KERNEL(qc__forward_single)(const qc__rhs_block *B, double *work, int32_t first, int32_t last) {
     const qc_symbolic *S = B->F->S;
     const int64_t step = NC * S->solve.work;
     double *x = work, *u = work + step, *top = work + 2 * step, *stack = work + 3 * step;
@@ -208,7 +208,8 @@ void KERNEL(qc__backward_panel)(const qc_factor *F, int32_t s, const double *t, 
     backward_panel(&P, F->D + N->first, t, x);
 }
 
-void KERNEL(qc__backward_single)(const qc__sweep *B, double *work, int32_t first, int32_t last) {
+void KERNEL(qc__backward_single)(const qc__rhs_block *B, double *work, int32_t first,
+                                 int32_t last) {
     const qc_symbolic *S = B->F->S;
     for (int32_t s = last; s >= first; s--) {
         const qc__solve_node *N = &S->solve.node[s];
@@ -219,7 +220,7 @@ void KERNEL(qc__backward_single)(const qc__sweep *B, double *work, int32_t first
 }
 
 /* x <- D^{-1/2} Y in elimination order, columns [begin, end) */
-void KERNEL(qc__store_scaled_single)(const qc__sweep *B, int64_t begin, int64_t end) {
+void KERNEL(qc__store_scaled_single)(const qc__rhs_block *B, int64_t begin, int64_t end) {
     double scale[LANES];
     for (int64_t k = begin; k < end; k += LANES) {
         const int64_t count = end - k < LANES ? end - k : LANES;
@@ -235,10 +236,10 @@ static inline void gather(int64_t begin, int64_t end, const int32_t *from, const
         for (int c = 0; c < NC; c++) y[NC * k + c] = x[NC * (int64_t)from[k] + c];
 }
 
-void KERNEL(qc__load_single)(const qc__sweep *B, int64_t begin, int64_t end) {
+void KERNEL(qc__load_single)(const qc__rhs_block *B, int64_t begin, int64_t end) {
     gather(begin, end, B->F->S->perm, B->x, B->Y);
 }
 
-void KERNEL(qc__store_single)(const qc__sweep *B, int64_t begin, int64_t end) {
+void KERNEL(qc__store_single)(const qc__rhs_block *B, int64_t begin, int64_t end) {
     gather(begin, end, B->F->S->inverse, B->Y, B->x);
 }
