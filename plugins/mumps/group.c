@@ -16,7 +16,7 @@ typedef struct command {
 static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 static MPI_Comm group = MPI_COMM_NULL;
 static const char *failure;
-static bool started;
+static bool started, foreign;    /* foreign: MPI is the program's */
 static unsigned char *slot_used; /* numbers of the instances alive */
 static int n_slots;
 
@@ -76,6 +76,7 @@ static const char *start(int role) {
     MPI_Finalized(&finalized);
     if (finalized) return "MPI was ended before";
     if (initialized) {
+        foreign = true;
         group = MPI_COMM_SELF;
         return NULL;
     }
@@ -179,15 +180,57 @@ static void obey(command c, ZMUMPS_STRUC_C ***table, int *n) {
     *id = NULL;
 }
 
+static void serve(void) {
+    ZMUMPS_STRUC_C **table = NULL;
+    int n = 0;
+    for (command c = receive(); c.job != JOB_STOP; c = receive()) obey(c, &table, &n);
+    free(table);
+    MPI_Comm_free(&group);
+}
+
 const char *qm_serve(void) {
     const char *reason = start(WORKER);
-    if (!reason) {
-        ZMUMPS_STRUC_C **table = NULL;
-        int n = 0;
-        for (command c = receive(); c.job != JOB_STOP; c = receive()) obey(c, &table, &n);
-        free(table);
-        MPI_Comm_free(&group);
-    }
+    if (!reason) serve();
     MPI_Finalize();
     return reason;
+}
+
+/* --- programs under MPI ----------------------------------------------------------------------- */
+
+static bool has_states(void) {
+    for (int i = 0; i < n_slots; i++)
+        if (slot_used[i]) return true;
+    return false;
+}
+
+static const char *join(int comm, bool first) {
+    const MPI_Comm whole = MPI_Comm_f2c((MPI_Fint)comm);
+    int rank;
+    if (qm_start() || !foreign) return "the program has to start MPI before it loads the plugin";
+    if (group != MPI_COMM_SELF) return "a communicator is in use; release it first";
+    if (has_states()) return "destroy the solver states first";
+    MPI_Comm_rank(whole, &rank);
+    if ((rank == HOST_RANK) != first) return "rank 0 calls use, all others serve";
+    return MPI_Comm_dup(whole, &group) == MPI_SUCCESS ? NULL : "MPI_Comm_dup failed";
+}
+
+const char *qm_join(int comm) {
+    return join(comm, true);
+}
+
+const char *qm_join_and_serve(int comm) {
+    const char *reason = join(comm, false);
+    if (reason) return reason;
+    serve();
+    group = MPI_COMM_SELF;
+    return NULL;
+}
+
+const char *qm_leave(void) {
+    if (!foreign || group == MPI_COMM_SELF) return "no communicator is in use";
+    if (has_states()) return "destroy the solver states first";
+    send((command){JOB_STOP, 0});
+    MPI_Comm_free(&group);
+    group = MPI_COMM_SELF;
+    return NULL;
 }

@@ -36,4 +36,9 @@ void qm_run(int job, int *slot, ZMUMPS_STRUC_C *id);
 /* The life of a worker: starts MPI, serves rank 0, ends MPI. NULL, or why it cannot. */
 const char *qm_serve(void);
 
+/* What qc_mumps.h says of use, serve and release. NULL, or what is wrong. */
+const char *qm_join(int comm);
+const char *qm_join_and_serve(int comm);
+const char *qm_leave(void);
+
 #endif

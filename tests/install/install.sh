@@ -1,6 +1,6 @@
 #!/bin/sh
 # install.sh SOURCE BUILD: installs BUILD into a scratch prefix and uses it from outside. Environment:
-# CMAKE, CC, PKG_CONFIG, SANITIZE, LIBDIR.
+# CMAKE, CC, PKG_CONFIG, SANITIZE, LIBDIR, MUMPS (not empty: the plugin was built).
 set -e
 source=$1 build=$2 here=$(dirname "$0")
 scratch=$(mktemp -d)
@@ -40,7 +40,20 @@ for kind in plugin headers_only; do
     grep -q '^qc.hodge ' "$scratch/list" || die "built-in stages are missing"
 done
 
+if [ -n "$MUMPS" ]; then
+    say "plugin mumps from the installed SDK"
+    configure "$source/plugins/mumps" mumps
+    names=$(nm -D --defined-only "$scratch/mumps/qc_mumps.so" | awk '$2 != "A" { print $3 }')
+    [ "$names" = qc_plugin_1 ] || die "the plugin mumps exports: $names"
+    [ -f "$prefix/$LIBDIR/quadcover/plugins/qc_mumps.so" ] || die "the plugin mumps is not installed"
+    [ -x "$prefix/bin/qc-mumps-worker" ] || die "its worker is not installed"
+fi
+
 if [ -n "$PKG_CONFIG" ]; then
+    say "the backend of docs/solvers.md"
+    sed -n '/^\/\* dense.c/,/^```$/p' "$source/docs/solvers.md" | sed '$d' > "$scratch/dense.c"
+    export PKG_CONFIG_PATH="$prefix/$LIBDIR/pkgconfig"
+    "$CC" $CFLAGS "$scratch/dense.c" $("$PKG_CONFIG" --cflags --libs qc) -llapacke -o "$scratch/dense"
     say "program with pkg-config"
     export PKG_CONFIG_PATH="$prefix/$LIBDIR/pkgconfig"
     "$CC" $CFLAGS "$here/consumer/consumer.c" $("$PKG_CONFIG" --cflags --libs qc) -o "$scratch/small"
@@ -54,6 +67,15 @@ unset LD_LIBRARY_PATH # the program finds its library by itself
 plugin=$scratch/plugin/smooth_field.so
 "$quadcover" stages --plugin "$plugin" | grep -q org.example.smooth_field || die "stages: not listed"
 "$quadcover" shape ellipsoid --resolution 2000 -o "$scratch/in.obj"
+if [ -x "$scratch/dense" ]; then
+    "$quadcover" shape ellipsoid --resolution 500 -o "$scratch/small.obj"
+    (cd "$scratch" && LD_LIBRARY_PATH="$prefix/$LIBDIR" ./dense small.obj > dense.out) || die "docs/solvers.md"
+    grep -q '^[0-9]* quads$' "$scratch/dense.out" || die "docs/solvers.md: $(cat "$scratch/dense.out")"
+fi
+if [ -n "$MUMPS" ]; then
+    "$quadcover" remesh "$scratch/in.obj" -o "$scratch/mumps.obj" --quads 500 --progress none --mode fast \
+        --plugin "$prefix/$LIBDIR/quadcover/plugins/qc_mumps.so" --set hodge.solver=mumps
+fi
 for pipeline in replace insert; do
     "$quadcover" remesh "$scratch/in.obj" -o "$scratch/$pipeline.obj" --set size.quads=500 \
         --plugin "$plugin" --pipeline "$here/$pipeline.json" --progress none
