@@ -1,6 +1,6 @@
-/* Rounds in which all runners take their turn. Short operations are repeated
- * within a turn. The first turn warms up and checks the solutions; it counts only where there is no
- * time for another one. */
+/* Rounds in which all runners take their turn. Short operations are repeated within a turn. The
+ * first turn warms up and checks the solutions; it counts only where there is no time for another
+ * one. */
 #include "bench.h"
 
 #include <math.h>
@@ -153,7 +153,7 @@ static void check_flip(const desk *d, bench_runner *r) {
 }
 
 static void take_turn(const desk *d, bench_runner *r, const bench_plan *plan, bool first) {
-    bool needs_factor = false, has_factor = !first && plan->keep;
+    bool needs_factor = false, has_factor = !first && plan->keep && !plan->op[OP_FACTOR];
     for (int op = OP_FACTOR; op < OP_COUNT; op++) needs_factor |= plan->op[op];
     if (plan->op[OP_ANALYZE])
         time_operation(d, r, OP_ANALYZE);
@@ -166,8 +166,11 @@ static void take_turn(const desk *d, bench_runner *r, const bench_plan *plan, bo
         r->peer->factor(r->self);
     if (first) check(d, r);
     if (first && r->peer->flip && d->M->n_flips) check_flip(d, r);
-    for (int op = OP_REFACTOR; op < OP_COUNT; op++)
-        if (plan->op[op] && offers(r->peer, op)) time_operation(d, r, op);
+    for (int op = OP_REFACTOR; op < OP_COUNT; op++) {
+        if (!plan->op[op] || !offers(r->peer, op)) continue;
+        if (op == OP_FLIP && !has_factor) run(d, r, op); /* records of old entries get their room */
+        time_operation(d, r, op);
+    }
     if (!plan->keep) r->peer->drop(r->self);
 }
 
