@@ -210,9 +210,24 @@ qc_status qc__lattice_search(qc_ctx *ctx, qc__lattice *Q, int32_t radius);
 void qc__blas_begin(void);
 void qc__blas_end(void);
 
-/* r <- b - A x, and max|r| / (max|A| max|x| + max|b|). */
-void qc__residual(const qc_hermitian *A, const qc_complex *b, const qc_complex *x, qc_complex *r);
-double qc__residual_size(const qc_hermitian *A, const qc_complex *b, const qc_complex *x,
-                         qc_complex *r);
+/* A borrowed matrix of either type. */
+typedef struct qc__view {
+    int32_t n, components;
+    const int64_t *colptr;
+    const int32_t *row;
+    const double *val;
+} qc__view;
+static inline qc__view qc__view_complex(const qc_hermitian *A) {
+    return (qc__view){A->n, 2, A->colptr, A->row, (const double *)A->val};
+}
+static inline qc__view qc__view_real(const qc_symmetric *A) {
+    return (qc__view){A->n, 1, A->colptr, A->row, A->val};
+}
+
+/* refine.c: solves with any solver and refines; x: n x nrhs, on error as it was. error: NULL, or
+ * the largest componentwise backward error. */
+typedef qc_status qc__solve_any(qc_ctx *ctx, void *arg, int32_t nrhs, double *x);
+qc_status qc__refine(qc_ctx *ctx, qc__view A, int32_t nrhs, int32_t steps, qc__solve_any *solve,
+                     void *arg, double *x, double *error);
 
 #endif

@@ -82,12 +82,12 @@ QC_API extern const qc_solver qc_solver_builtin;
  * not optional is NULL). Called by everything here which takes a solver. Thread: that of ctx. */
 QC_API qc_status qc_solver_check(qc_ctx *ctx, const qc_solver *solver);
 
-/* Solve with a factorised state, then `steps` rounds of iterative refinement with A, as
- * qc_solve_refined. x enters as b, leaves as the solution; *residual may be NULL. Errors: those of
+/* Solve with a factorised state, then up to `steps` rounds of iterative refinement with A, as
+ * qc_solve_refined. x enters as b, leaves as the solution; *error may be NULL. Errors: those of
  * solve, NOMEM, CANCELLED. */
 QC_API qc_status qc_solver_solve_refined(qc_ctx *ctx, const qc_solver *solver,
                                          qc_solver_state *state, const qc_hermitian *A,
-                                         int32_t steps, qc_complex *x, double *residual);
+                                         int32_t steps, qc_complex *x, double *error);
 
 #ifdef __cplusplus
 }

@@ -28,6 +28,7 @@ static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
     const qc_complex w[2] = {{0.1, 0.2}, {0.3, 0}};
     qc_complex *x = calloc((size_t)M->n * 12, sizeof *x);
     int32_t *index = malloc((size_t)M->n * sizeof *index), count;
+    double condition;
     x[3].re = 1;
     qc_status status = qc_analyze(ctx, &A, NULL, &S);
     assert_true((status == QC_OK) == (S != NULL));
@@ -45,7 +46,8 @@ static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
     if (status == QC_OK)
         status = qc_solve_forward_sparse(ctx, F, 2, row, w, M->n, index, x, &count);
     if (status == QC_OK) status = qc_solve_entries(ctx, F, 2, row, w, 2, row, x);
-    if (status == QC_OK) status = qc_solve_refined(ctx, F, &A, 1, x, NULL);
+    if (status == QC_OK) status = qc_solve_refined(ctx, F, &A, 1, 1, x, NULL);
+    if (status == QC_OK) status = qc_condition(ctx, F, &A, &condition);
     qc_factor_free(F);
     free(x);
     free(index);

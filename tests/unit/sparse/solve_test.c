@@ -163,18 +163,42 @@ static void forward_identity(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* The error of the factor is made large by factorising a neighbour of A. Every right-hand side has
+ * to reach rounding level in every component; b stays when nothing is solved. */
 static void refinement_reaches_roundoff(void **state) {
     (void)state;
-    qc_ctx *ctx = new_ctx(1);
-    test_matrix M = make_matrix(GRID, 900, 1e-7);
+    qc_ctx *ctx = new_ctx(2);
+    test_matrix M = make_matrix(GRID, 900, 1e-2);
+    const int64_t n = M.n;
     const qc_hermitian A = hermitian(&M);
-    qc_factor *F = factor_of(ctx, &M, NULL);
-    qc_complex *x = random_vectors(M.n);
-    double residual_after = 1;
-    assert_int_equal(qc_solve_refined(ctx, F, &A, 2, x, &residual_after), QC_OK);
-    assert_true(residual_after < 1e-15);
-    free(x);
+    const qc_symmetric B = symmetric(&M);
+    for (int64_t j = 0; j < n; j++) {
+        M.val[M.colptr[j + 1] - 1].re *= 1 + 1e-4;
+        M.real[M.colptr[j + 1] - 1] *= 1 + 1e-4;
+    }
+    qc_factor *F = factor_of(ctx, &M, NULL), *G = real_factor_of(ctx, &M, NULL);
+    for (int64_t j = 0; j < n; j++) {
+        M.val[M.colptr[j + 1] - 1].re /= 1 + 1e-4;
+        M.real[M.colptr[j + 1] - 1] /= 1 + 1e-4;
+    }
+    for (int32_t nrhs = 1; nrhs <= 10; nrhs += 9) {
+        qc_complex *x = random_vectors(nrhs * n), *b = random_vectors(nrhs * n);
+        double *y = malloc((size_t)(nrhs * n) * sizeof *y), before, after;
+        for (int64_t i = 0; i < nrhs * n; i++) y[i] = x[i].re;
+        memcpy(b, x, (size_t)(nrhs * n) * sizeof *b);
+        assert_int_equal(qc_solve_refined(ctx, F, &A, nrhs, -1, x, &before), QC_ERR_ARGUMENT);
+        assert_memory_equal(x, b, (size_t)(nrhs * n) * sizeof *b);
+        assert_int_equal(qc_solve_refined(ctx, F, &A, nrhs, 0, x, &before), QC_OK);
+        assert_int_equal(qc_solve_refined(ctx, F, &A, nrhs, 20, b, &after), QC_OK);
+        assert_true(before > 1e-7 && after < 1e-15);
+        assert_int_equal(qc_solve_refined_real(ctx, G, &B, nrhs, 20, y, &after), QC_OK);
+        assert_true(after < 1e-15);
+        free(x);
+        free(b);
+        free(y);
+    }
     qc_factor_free(F);
+    qc_factor_free(G);
     free_matrix(&M);
     qc_ctx_free(ctx);
 }

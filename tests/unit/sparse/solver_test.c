@@ -183,7 +183,7 @@ static void refinement_needs_nothing_but_the_table(void **unused) {
     memcpy(x, y, sizeof x);
     qc_factor *F = factor_of(ctx, &M, NULL);
     assert_int_equal(qc_solver_solve_refined(ctx, builtin, state, &A, 1, x, &after), QC_OK);
-    assert_int_equal(qc_solve_refined(ctx, F, &A, 1, y, &before), QC_OK);
+    assert_int_equal(qc_solve_refined(ctx, F, &A, 1, 1, y, &before), QC_OK);
     assert_memory_equal(x, y, N * sizeof *x);
     assert_true(before == after);
     qc_factor_free(F);

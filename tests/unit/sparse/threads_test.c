@@ -39,7 +39,7 @@ static void check_thread_counts(const test_matrix *M, const char *instructions) 
         double residual = 1;
         const qc_hermitian A = hermitian(M);
         for (size_t i = 0; i < size; i++) x[i] = (qc_complex){sin((double)i), cos((double)i)};
-        assert_int_equal(qc_solve_refined(ctx, F, &A, 0, x, &residual), QC_OK);
+        assert_int_equal(qc_solve_refined(ctx, F, &A, 1, 0, x, &residual), QC_OK);
         assert_true(residual < 1e-15);
         assert_int_equal(qc_solve(ctx, F, 20, x), QC_OK);
         if (threads == 1) {
