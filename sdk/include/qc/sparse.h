@@ -36,23 +36,29 @@ typedef struct qc_symmetric {
 typedef struct qc_symbolic qc_symbolic; /* permutation, elimination tree, supernodes; immutable */
 typedef struct qc_factor qc_factor; /* numeric factor; the one mutable object of the SDK         */
 
+/* Orders against fill. All are deterministic; AUTO takes what measures best for size and pattern.
+ */
 enum {
     QC_ORDER_AUTO = 0,
     QC_ORDER_NATURAL = 1,
     QC_ORDER_GIVEN = 2,
     QC_ORDER_AMD = 3,       /* approximate minimum degree */
-    QC_ORDER_DISSECTION = 5 /* nested dissection, minimum degree in small pieces: less fill and much
-                               shorter updates on meshes from some thousand rows on */
+    QC_ORDER_QUOTIENT = 4,  /* the same for groups of rows; without `group` of rows which have the
+                               same neighbours */
+    QC_ORDER_DISSECTION = 5 /* nested dissection through the cliques of A, minimum degree in small
+                               pieces and where there are no small separators */
 };
 
+/* Hints may be NULL. All arrays are borrowed for the call. */
 typedef struct qc_analyze_options {
     uint32_t struct_size;
-    int32_t ordering; /* QC_ORDER_...                                                    */
-    const int32_t
-        *permutation; /* QC_ORDER_GIVEN: n entries, permutation[k] = row eliminated k-th   */
+    int32_t ordering;           /* QC_ORDER_...                                             */
+    const int32_t *permutation; /* GIVEN: n, permutation[k] = row eliminated k-th           */
+    const int32_t *group;       /* QUOTIENT, DISSECTION: n, rows with equal ids stay together */
+    const double *position;     /* DISSECTION: n x 3, the place of each row, in any unit    */
 } qc_analyze_options;
 #define QC_ANALYZE_OPTIONS_INIT                                                                    \
-    { sizeof(qc_analyze_options), 0, NULL }
+    { sizeof(qc_analyze_options), 0, NULL, NULL, NULL }
 
 typedef struct qc_symbolic_info {
     uint32_t struct_size;
@@ -65,9 +71,10 @@ typedef struct qc_symbolic_info {
 #define QC_SYMBOLIC_INFO_INIT                                                                      \
     { sizeof(qc_symbolic_info), 0, 0, 0, 0, 0, 0.0, 0, 0 }
 
-/* Symbolic analysis of the pattern (values are not read; val may be NULL). options NULL = AMD.
- * Errors: ARGUMENT (where = column whose rows are unsorted, out of range or without diagonal; or
- * the bad permutation entry), NOMEM, CANCELLED. */
+/* Symbolic analysis of the pattern (values are not read; val may be NULL). options NULL = AUTO.
+ * Errors: ARGUMENT (where = column whose rows are unsorted, out of range or without diagonal; the
+ * bad permutation entry; the row whose position is not finite; -1 for an unknown ordering or a hint
+ * which the ordering does not take), NOMEM, CANCELLED. */
 QC_API qc_status qc_analyze(qc_ctx *ctx, const qc_hermitian *A, const qc_analyze_options *options,
                             qc_symbolic **out);
 QC_API qc_status qc_analyze_real(qc_ctx *ctx, const qc_symmetric *A,

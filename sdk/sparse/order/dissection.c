@@ -6,13 +6,7 @@
 #include "sdk/sparse/order/internal.h"
 #include <string.h>
 
-#ifndef LEAF
-#define LEAF 140
-#endif
-#ifndef CLUSTER
-#define CLUSTER 16
-#endif
-enum { TASK = 6000, BATCH = 32 };
+enum { LEAF = 140, CLUSTER = 16, TASK = 6000, BATCH = 32 };
 
 typedef struct task {
     qc__piece piece, child[2]; /* children without rows do not exist */
@@ -29,7 +23,7 @@ static void leave(const qc__dissection *D, const qc__piece *P) {
     const qc__cover C = qc__piece_view(D, P);
     for (int32_t r = 0; r < P->n; r++) D->perm[P->row + r] = C.net[r].name;
     D->left[P->row] = true;
-    D->work.to[P->row] = P->n;
+    D->work.flow[2 * (int64_t)P->row] = P->n;
 }
 
 /* False when a piece has no useful separator. */
@@ -38,7 +32,7 @@ static bool cut(const qc__dissection *D, const qc__piece *P, qc__piece child[2])
     qc__cut_work w = qc__piece_work(D, P);
     int32_t size[3];
     if (P->m < 2) return false;
-    qc__bisect(&C, &w);
+    qc__bisect(&C, D->center, &w);
     qc__row_sides(&C, &w, size);
     if (size[QC__FREE] > P->n / 5) return false;
     qc__piece_split(D, P, NULL, size, child);
@@ -129,14 +123,12 @@ static bool allocate(qc_ctx *ctx, qc__dissection *D) {
         return false;
     w->queue = w->distance + m;
     w->list = w->queue + 2 * (int64_t)m;
-    w->coarse = w->list + 2 * (int64_t)m;
-    w->border = w->coarse + 2 * (int64_t)m;
+    w->border = w->list + 2 * (int64_t)m;
     w->next = w->border + m;
     w->path = w->next + m;
     w->label = w->path + m;
-    w->arcs = w->label + m;
-    w->from = w->arcs + 2 * entries;
-    w->to = w->from + n;
+    w->heap = w->label + m;
+    w->flow = w->heap + 2 * (entries + m);
     return true;
 }
 
@@ -146,24 +138,25 @@ static void release(qc__dissection *D) {
     qc__free(D->work.distance);
     qc__free(D->work.side);
     qc__free(D->left);
+    qc__free(D->center);
 }
 
 /* Rows in very many elements come last, since hardly any bisection spares them; rows in none, which
  * have no neighbours, before these. */
-static qc__piece prepare(const qc__dissection *D) {
+static qc__piece prepare(const qc__dissection *D, int32_t *clusters) {
     qc__cover C = D->buffer[0];
     int32_t size[3] = {0, 0, 0}, isolated = 0;
     const double dense = 16 + 10 * sqrt((double)C.n);
     for (int32_t r = 0; r < C.n; r++) {
         const int32_t count = C.net[r].end - C.net[r].begin;
-        D->work.to[r] = count > dense ? QC__FREE : QC__SOURCE;
-        size[D->work.to[r]] += count > 0;
+        D->work.flow[r] = count > dense ? QC__FREE : QC__SOURCE;
+        size[D->work.flow[r]] += count > 0;
     }
     for (int32_t r = 0; r < C.n; r++)
         if (C.net[r].end == C.net[r].begin) D->perm[size[QC__SOURCE] + isolated++] = r;
     qc__piece child[2];
     const qc__piece all = {0, C.m, C.n, 0, 0, 0, 0};
-    qc__cluster_elements(&C, CLUSTER, D->work.list);
+    *clusters = qc__cluster_elements(&C, CLUSTER, D->work.list);
     memset(D->work.side, QC__SOURCE, (size_t)C.m);
     qc__piece_split(D, &all, D->work.list, size, child);
     return child[0];
@@ -179,22 +172,29 @@ static qc_status order_left(qc_ctx *ctx, qc__pattern A, const qc__dissection *D)
             if (!place) return QC_ERR_NOMEM;
             memset(place, 255, (size_t)A.n * sizeof *place);
         }
-        status = qc__amd_rows(ctx, A, D->work.to[k], D->perm + k, place);
+        status = qc__amd_rows(ctx, A, D->work.flow[2 * (int64_t)k], D->perm + k, place);
         if (status == QC_OK && !qc__progress(ctx, 0.95)) status = QC_ERR_CANCELLED;
     }
     qc__free(place);
     return status;
 }
 
-qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *options,
-                               int32_t *perm) {
+qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const double *position, int32_t *perm) {
     qc__dissection D = {.perm = perm};
-    (void)options;
     qc_status status = qc__cover_create(ctx, A, &D.buffer[0]);
     if (status == QC_OK && D.buffer[0].m == 0) { /* a diagonal matrix */
         for (int32_t k = 0; k < A.n; k++) perm[k] = k;
     } else if (status == QC_OK) {
-        status = allocate(ctx, &D) ? run(ctx, &D, prepare(&D)) : QC_ERR_NOMEM;
+        int32_t clusters = 0;
+        qc__piece root = {0};
+        status = allocate(ctx, &D) ? QC_OK : QC_ERR_NOMEM;
+        if (status == QC_OK) root = prepare(&D, &clusters);
+        if (status == QC_OK && position) {
+            D.center = QC__NEW(ctx, int16_t, 3 * (int64_t)clusters);
+            if (!D.center || !qc__cluster_centers(ctx, &D.buffer[0], clusters, position, D.center))
+                status = QC_ERR_NOMEM;
+        }
+        if (status == QC_OK) status = run(ctx, &D, root);
         if (status == QC_OK) status = order_left(ctx, A, &D);
     }
     release(&D);

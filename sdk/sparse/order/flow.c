@@ -12,98 +12,87 @@ enum { SOURCE = QC__SOURCE, SINK = QC__SINK, FREE = QC__FREE };
 typedef struct network {
     const qc__cover *C;
     qc__cut_work *w;
-    int32_t border[2]; /* sources and sinks which share a row with other elements */
-    int32_t *terminal[2];
+    int32_t *terminal[2], count[2]; /* sources and sinks which share a row with free elements */
     int32_t queued;
 } network;
 
-/* Sources from the front of w->border, sinks from its back. */
-static void find_border(network *N, int32_t free_count, const int32_t *free_element) {
+enum { UNSEEN = -1, DEAD = -2, FIXED = -3 };
+
+/* Sources from the front of w->border, sinks from its back; distance of all elements. */
+static void find_terminals(network *N, int32_t count, const int32_t *element) {
     const qc__cover *C = N->C;
     qc__cut_work *w = N->w;
-    int32_t nsink = 0;
-    N->terminal[0] = w->border;
-    for (int32_t k = 0; k < free_count; k++) {
-        const qc__element E = C->element[free_element[k]];
+    int32_t border[2] = {0, 0};
+    for (int32_t e = 0; e < C->m; e++) w->distance[e] = FIXED;
+    for (int32_t k = 0; k < count; k++) w->distance[element[k]] = UNSEEN;
+    for (int32_t k = 0; k < count; k++) {
+        const qc__element E = C->element[element[k]];
         for (int32_t p = E.begin; p < E.active; p++) {
             const qc__net net = C->net[C->entry[p]];
             for (int32_t q = net.begin; q < net.end; q++) {
                 const int32_t v = C->element_of[q];
-                if (w->side[v] == FREE || w->distance[v] != -1) continue;
-                w->distance[v] = 0;
-                if (w->side[v] == SOURCE)
-                    w->border[N->border[0]++] = v;
-                else
-                    w->border[C->m - ++nsink] = v;
+                if (w->distance[v] != FIXED) continue;
+                w->distance[v] = UNSEEN;
+                w->border[w->side[v] == SOURCE ? border[0]++ : C->m - ++border[1]] = v;
             }
         }
     }
-    N->border[1] = nsink;
-    N->terminal[1] = w->border + C->m - nsink;
-    for (int s = 0; s < 2; s++)
-        for (int32_t k = 0; k < N->border[s]; k++) w->distance[N->terminal[s][k]] = -1;
+    for (int s = 0; s < 2; s++) {
+        N->count[s] = border[s];
+        N->terminal[s] = s == SOURCE ? w->border : w->border + C->m - border[1];
+    }
 }
 
 static inline void reach(network *N, int32_t e, int32_t d) {
     int32_t *distance = N->w->distance;
-    const bool fresh = distance[e] == -1;
+    const bool unseen = distance[e] == UNSEEN;
     N->w->queue[N->queued] = e;
-    N->queued += fresh;
-    distance[e] = fresh ? d : distance[e];
+    N->queued += unseen;
+    distance[e] = unseen ? d : distance[e];
 }
 
-/* Distance to the sinks (own = SINK) in the residual network, up to the layer which holds the first
- * source; own = SOURCE: from the sources to the first sink. Returns whether they meet. */
-static bool layers(network *N, uint8_t own) {
+/* Distance to the sinks (own = SINK) in the residual network up to the first source; own = SOURCE:
+ * from the sources to the first sink. Returns whether they meet. */
+static bool layers(network *N, int own) {
     const qc__cover *C = N->C;
-    const uint8_t *side = N->w->side, goal = (uint8_t)(SOURCE + SINK - own);
-    int32_t *distance = N->w->distance, *queue = N->w->queue, last = INT32_MAX;
-    const int32_t *in = own == SINK ? N->w->to : N->w->from; /* the element a full row is left by */
-    const int32_t *out = own == SINK ? N->w->from : N->w->to;
-    for (int32_t k = 0; k < N->queued; k++) distance[queue[k]] = -1;
+    const int32_t *flow = N->w->flow;
+    int32_t *distance = N->w->distance, *queue = N->w->queue;
+    for (int32_t k = 0; k < N->queued; k++) distance[queue[k]] = UNSEEN;
     N->queued = 0;
-    for (int32_t k = 0; k < N->border[own]; k++) reach(N, N->terminal[own][k], 0);
+    for (int32_t k = 0; k < N->count[own]; k++) reach(N, N->terminal[own][k], 0);
     for (int32_t k = 0; k < N->queued; k++) {
         const int32_t u = queue[k], d = distance[u] + 1;
-        if (d > last) break;
-        if (side[u] == goal) {
-            last = d - 1;
-            break;
-        }
+        if (N->w->side[u] == !own) return true;
         for (int32_t p = C->element[u].begin; p < C->element[u].active; p++) {
-            const int32_t r = C->entry[p];
-            if (in[r] != -1 && u != out[r]) {
-                reach(N, in[r], d);
+            const int32_t r = C->entry[p], in = flow[2 * r + own], out = flow[2 * r + !own];
+            if (in != -1 && u != out) { /* a full row only takes flow back */
+                reach(N, in, d);
                 continue;
             }
-            for (int32_t q = C->net[r].begin; q < C->net[r].end; q++) {
-                const int32_t v = C->element_of[q];
-                if (side[v] != own) reach(N, v, d);
-            }
+            const qc__net net = C->net[r];
+            for (int32_t q = net.begin; q < net.end; q++) reach(N, C->element_of[q], d);
         }
     }
-    return last != INT32_MAX;
+    return false;
 }
 
 /* Flow along row r from u to v. */
 static void push(network *N, int32_t r, int32_t u, int32_t v) {
-    int32_t *from = N->w->from, *to = N->w->to;
-    if (from[r] == -1) {
-        from[r] = u;
-        to[r] = v;
-    } else if (to[r] == u) {
-        to[r] = v;
+    int32_t *flow = N->w->flow + 2 * r;
+    if (flow[0] == -1) {
+        flow[0] = u;
+        flow[1] = v;
     } else {
-        from[r] = u;
+        flow[flow[1] == u] = flow[1] == u ? v : u;
     }
-    if (from[r] == to[r]) from[r] = to[r] = -1;
+    if (flow[0] == flow[1]) flow[0] = flow[1] = -1;
 }
 
 /* Next element towards the sinks by row r, or -1. */
 static int32_t step(const network *N, int32_t u, int32_t r) {
     const int32_t *distance = N->w->distance, d = distance[u] - 1;
-    const int32_t a = N->w->from[r];
-    if (a != -1 && N->w->to[r] != u) return distance[a] == d ? a : -1;
+    const int32_t a = N->w->flow[2 * r];
+    if (a != -1 && N->w->flow[2 * r + 1] != u) return distance[a] == d ? a : -1;
     for (int32_t q = N->C->net[r].begin; q < N->C->net[r].end; q++)
         if (distance[N->C->element_of[q]] == d) return N->C->element_of[q];
     return -1;
@@ -121,7 +110,7 @@ static bool augment(network *N, int32_t s) {
             w->path[length++] = u;
             u = v;
         } else {
-            w->distance[u] = -2; /* no way from here */
+            w->distance[u] = DEAD; /* no way from here */
             if (length == 0) return false;
             u = w->path[--length];
         }
@@ -134,40 +123,37 @@ static bool augment(network *N, int32_t s) {
     return true;
 }
 
-void qc__min_cut(const qc__cover *C, qc__cut_work *w, int32_t free_count,
-                 const int32_t *free_element) {
+static int32_t count_side(const qc__cover *C, const uint8_t *side, uint8_t which) {
+    int32_t count = 0;
+    for (int32_t e = 0; e < C->m; e++) count += side[e] == which;
+    return count;
+}
+
+void qc__min_cut(const qc__cover *C, qc__cut_work *w, int32_t count, const int32_t *element) {
     network N = {.C = C, .w = w};
-    memset(w->distance, 255, (size_t)C->m * sizeof *w->distance);
-    memset(w->from, 255, (size_t)C->n * sizeof *w->from);
-    memset(w->to, 255, (size_t)C->n * sizeof *w->to);
-    find_border(&N, free_count, free_element);
+    memset(w->flow, 255, 2 * (size_t)C->n * sizeof *w->flow);
+    find_terminals(&N, count, element);
     while (layers(&N, SINK)) {
         for (int32_t k = 0; k < N.queued; k++) w->next[w->queue[k]] = C->element[w->queue[k]].begin;
-        for (int32_t k = N.queued; k-- > 0;) {
-            const int32_t s = w->queue[k];
-            if (w->side[s] != SOURCE) continue;
+        for (int32_t k = 0; k < N.count[SOURCE]; k++) {
+            const int32_t s = N.terminal[SOURCE][k];
             while (w->distance[s] >= 0 && augment(&N, s)) continue;
         }
     }
-    /* Elements which no longer reach the sinks, or those which the sources no longer reach? The
-     * cut which is better balanced. */
-    int32_t fixed[2] = {0, 0}, behind = 0, ahead = 0;
-    for (int32_t e = 0; e < C->m; e++) {
-        fixed[0] += w->side[e] == SOURCE;
-        fixed[1] += w->side[e] == SINK;
-    }
-    for (int32_t k = 0; k < free_count; k++) {
-        const int32_t e = free_element[k];
-        behind += w->distance[e] >= 0;
-        w->next[e] = w->distance[e];
+    /* Two smallest cuts: around what still reaches the sinks, and around what the sources still
+     * reach. The better balanced one is taken. */
+    const int32_t sources = count_side(C, w->side, SOURCE), sinks = C->m - count - sources;
+    int32_t *late = w->next, behind = 0, ahead = 0;
+    for (int32_t k = 0; k < count; k++) {
+        late[k] = w->distance[element[k]] >= 0;
+        behind += late[k];
     }
     layers(&N, SOURCE);
-    for (int32_t k = 0; k < free_count; k++) ahead += w->distance[free_element[k]] >= 0;
-    const int32_t late = abs(fixed[0] + free_count - behind - (fixed[1] + behind)),
-                  early = abs(fixed[0] + ahead - (fixed[1] + free_count - ahead));
-    for (int32_t k = 0; k < free_count; k++) {
-        const int32_t e = free_element[k];
-        const bool sink = late <= early ? w->next[e] >= 0 : w->distance[e] < 0;
-        w->side[e] = sink ? SINK : SOURCE;
+    for (int32_t k = 0; k < count; k++) ahead += w->distance[element[k]] >= 0;
+    const bool take_late = abs(sources + count - behind - (sinks + behind)) <=
+                           abs(sources + ahead - (sinks + count - ahead));
+    for (int32_t k = 0; k < count; k++) {
+        const bool sink = take_late ? late[k] : w->distance[element[k]] < 0;
+        w->side[element[k]] = sink ? SINK : SOURCE;
     }
 }

@@ -33,9 +33,8 @@ typedef struct qc__cover {
 typedef struct qc__cut_work {
     int32_t *distance, *border, *next, *path, *label; /* m */
     int32_t *queue, *list; /* 2 m: writing one place past the end keeps a branch out of loops */
-    int32_t *coarse;       /* 2 m */
-    int32_t *arcs;         /* 2 per entry */
-    int32_t *from, *to;    /* n: elements between which a row carries flow, or -1 */
+    int32_t *heap;         /* 2 m + 2 per entry: graphs of clusters */
+    int32_t *flow;         /* 2 n: elements from and to which a row carries flow, or -1 */
     uint8_t *side;         /* m */
 } qc__cut_work;
 
@@ -45,14 +44,47 @@ enum { QC__SOURCE, QC__SINK, QC__FREE };
 qc_status qc__cover_create(qc_ctx *ctx, qc__pattern A, qc__cover *out);
 void qc__cover_free(qc__cover *cover);
 
-/* clusters.c: sets the clusters of all elements; order: m, elements by cluster. */
-void qc__cluster_elements(qc__cover *C, int32_t size, int32_t *order);
+/* clusters.c: sets the clusters of all elements; order: m, elements by cluster.
+ * Returns their number. */
+int32_t qc__cluster_elements(qc__cover *C, int32_t size, int32_t *order);
+/* center: 3 per cluster, in [0, QC__PLACES); position: of the rows. False: no memory. */
+bool qc__cluster_centers(qc_ctx *ctx, const qc__cover *C, int32_t clusters, const double *position,
+                         int16_t *center);
 
 /* bisect.c: side[e] = QC__SOURCE or QC__SINK, both occur, such that few rows have elements on both
- * sides. C->m > 1. */
-void qc__bisect(const qc__cover *C, qc__cut_work *work);
+ * sides. C->m > 1; center: 3 coordinates of each cluster, or NULL. */
+void qc__bisect(const qc__cover *C, const int16_t *center, qc__cut_work *work);
 /* coarse.c: the same for whole clusters; false when there are too few. */
-bool qc__bisect_clusters(const qc__cover *C, qc__cut_work *work);
+bool qc__bisect_clusters(const qc__cover *C, const int16_t *center, qc__cut_work *work);
+
+/* A graph with weights, and the state of a cut of it. */
+typedef struct qc__graph {
+    int32_t n, arcs, capacity;
+    int32_t *start, *size;                           /* n + 1; n: elements in a node */
+    int32_t *distance, *next, *path, *queue, *order; /* n */
+    int32_t *nearest;                                /* n */
+    int32_t *arc, *weight, *reverse, *flow; /* arcs: other node, weight, the arc back, flow */
+    int16_t *center;                        /* 3 n: in [0, QC__PLACES), or NULL */
+    uint8_t *side, *best;                   /* n: terminals of the flow; sides of the best cut */
+    int64_t value;                          /* of the flow */
+} qc__graph;
+enum { QC__PLACES = 1024 };
+
+/* Space for graphs. */
+typedef struct qc__heap {
+    int32_t *next;
+    int64_t free;
+} qc__heap;
+
+/* graph.c: of[k] = node which holds element (or node of G) k. False when this would not be much
+ * smaller, or without space. */
+bool qc__graph_of_clusters(const qc__cover *C, const int16_t *center, qc__heap *heap, int32_t *of,
+                           qc__graph *G);
+bool qc__graph_coarsen(const qc__graph *G, qc__heap *heap, int32_t *of, qc__graph *H);
+/* graph_flow.c: adds flow from the nodes of side QC__SOURCE to those of side QC__SINK until there
+ * is no more; then distance[k] >= 0 where a sink can still be reached: a smallest cut. */
+void qc__graph_flow(qc__graph *G);
+
 /* flow.c: moves the free elements to the sides so that the number of rows with elements on both is
  * smallest. element: those which are QC__FREE. */
 void qc__min_cut(const qc__cover *C, qc__cut_work *work, int32_t count, const int32_t *element);
@@ -71,14 +103,15 @@ typedef struct qc__piece {
 typedef struct qc__dissection {
     qc__cover buffer[2];
     qc__cut_work work;
-    int32_t *perm; /* n */
-    bool *left;    /* n: perm[k..k + work.to[k]) is left to another method */
+    int16_t *center; /* 3 per cluster, or NULL */
+    int32_t *perm;   /* n */
+    bool *left;      /* n: perm[k..k + work.flow[2 k]) is left to another method */
 } qc__dissection;
 
 /* pieces.c */
 qc__cover qc__piece_view(const qc__dissection *D, const qc__piece *P);
 qc__cut_work qc__piece_work(const qc__dissection *D, const qc__piece *P);
-/* Side of each row, QC__FREE for those with elements on both, into work->to; size[3]. */
+/* Side of each row, QC__FREE for those with elements on both, into work->flow; size[3]. */
 void qc__row_sides(const qc__cover *C, qc__cut_work *work, int32_t size[3]);
 /* Copies the two sides into the other buffer, elements in the given order (NULL: as they are), and
  * appends the rows of side QC__FREE, the separator, to the order. */
@@ -89,8 +122,17 @@ void qc__piece_split(const qc__dissection *D, const qc__piece *P, const int32_t 
 qc_status qc__amd(qc_ctx *ctx, qc__pattern A, int32_t *perm);
 qc_status qc__amd_rows(qc_ctx *ctx, qc__pattern A, int32_t n, int32_t *perm, int32_t *place);
 
-/* dissection.c */
-qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *options,
-                               int32_t *perm);
+/* dissection.c; position: 3 n or NULL */
+qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const double *position, int32_t *perm);
+
+/* quotient.c: group: n, out, from the caller's ids or of indistinguishable rows; *count groups. */
+qc_status qc__find_groups(qc_ctx *ctx, qc__pattern A, const int32_t *given, int32_t *group,
+                          int32_t *count);
+/* Pattern of the groups; *colptr and *row belong to the caller, also on failure. */
+qc_status qc__quotient(qc_ctx *ctx, qc__pattern A, const int32_t *group, int32_t count,
+                       int64_t **colptr, int32_t **row);
+/* Order of the rows from one of the groups. */
+qc_status qc__expand_groups(qc_ctx *ctx, int32_t n, const int32_t *group, int32_t count,
+                            const int32_t *order, int32_t *perm);
 
 #endif

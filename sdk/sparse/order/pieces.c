@@ -23,10 +23,8 @@ qc__cut_work qc__piece_work(const qc__dissection *D, const qc__piece *P) {
                           .label = w->label + e,
                           .queue = w->queue + 2 * e,
                           .list = w->list + 2 * e,
-                          .coarse = w->coarse + 2 * e,
-                          .arcs = w->arcs + 2 * (int64_t)P->entry,
-                          .from = w->from + P->row,
-                          .to = w->to + P->row,
+                          .heap = w->heap + 2 * (e + P->entry),
+                          .flow = w->flow + 2 * (int64_t)P->row,
                           .side = w->side + e};
 }
 
@@ -37,7 +35,7 @@ void qc__row_sides(const qc__cover *C, qc__cut_work *w, int32_t size[3]) {
         int32_t side = w->side[C->element_of[net.begin]];
         for (int32_t q = net.begin + 1; q < net.end; q++)
             if (w->side[C->element_of[q]] != side) side = QC__FREE;
-        w->to[r] = side;
+        w->flow[r] = side;
         size[side]++;
     }
 }
@@ -89,12 +87,12 @@ void qc__piece_split(const qc__dissection *D, const qc__piece *P, const int32_t 
     const qc__cut_work w = qc__piece_work(D, P);
     copying c = {.D = D,
                  .from = qc__piece_view(D, P),
-                 .row_side = w.to,
-                 .number = w.from,
+                 .row_side = w.flow,
+                 .number = w.flow + P->n,
                  .separator = P->row + P->n - size[QC__FREE]};
     qc__piece at = *P;
     at.buffer = !P->buffer;
-    memset(w.from, 255, (size_t)P->n * sizeof *w.from);
+    memset(c.number, 255, (size_t)P->n * sizeof *c.number);
     for (int s = 0; s < 2; s++) {
         at.m = at.n = 0;
         c.to = qc__piece_view(D, &at);

@@ -2,7 +2,8 @@
 #include "sdk/sparse/order/internal.h"
 #include "support.h"
 
-static const int32_t methods[] = {QC_ORDER_AUTO, QC_ORDER_AMD, QC_ORDER_DISSECTION};
+static const int32_t methods[] = {QC_ORDER_AUTO, QC_ORDER_AMD, QC_ORDER_QUOTIENT,
+                                  QC_ORDER_DISSECTION};
 enum { METHODS = sizeof methods / sizeof *methods };
 
 static qc_analyze_options with(int32_t ordering) {
@@ -232,6 +233,128 @@ static void every_allocation_may_fail(void **state) {
     }
 }
 
+/* Rows of the torus of k x k squares lie on the plane; place: unit of the coordinates. */
+static double *positions(const test_matrix *M, int32_t k, double unit) {
+    double *x = malloc(3 * (size_t)M->n * sizeof *x);
+    for (int32_t e = 0; e < M->n; e++) {
+        const int32_t v = e / 3, side = e % 3;
+        x[3 * e] = (v % k + (side == 1 ? 0 : 0.5)) * unit;
+        x[3 * e + 1] = (v / k + (side == 0 ? 0 : 0.5)) * unit;
+        x[3 * e + 2] = 0.37 * x[3 * e] * x[3 * e + 1] / (k * unit);
+    }
+    return x;
+}
+
+static void unit_of_positions_does_not_matter(void **state) {
+    (void)state;
+    enum { K = 60 };
+    qc_ctx *ctx = new_ctx(2);
+    test_matrix M = torus(K, true);
+    const double unit[] = {1, 1e-6, 1e6, 0};
+    int32_t *perm[4];
+    for (int i = 0; i < 4; i++) {
+        double *x = positions(&M, K, unit[i] > 0 ? unit[i] : 1);
+        qc_analyze_options options = with(QC_ORDER_DISSECTION);
+        options.position = x;
+        for (int32_t k = 0; k < 3 * M.n && unit[i] == 0; k++) x[k] = 7; /* all at one place */
+        perm[i] = malloc((size_t)M.n * sizeof *perm[i]);
+        assert_int_equal(qc__order(ctx, pattern_of(&M), &options, perm[i]), QC_OK);
+        check_permutation(&M, perm[i]);
+        if (i == 1 || i == 2) assert_memory_equal(perm[i], perm[0], (size_t)M.n * sizeof **perm);
+        free(x);
+    }
+    for (int i = 0; i < 4; i++) free(perm[i]);
+    free_matrix(&M);
+    qc_ctx_free(ctx);
+}
+
+static void groups_stay_together(void **state) {
+    (void)state;
+    static const int32_t ordering[] = {QC_ORDER_QUOTIENT, QC_ORDER_DISSECTION};
+    qc_ctx *ctx = new_ctx(2);
+    test_matrix M = torus(30, true);
+    int32_t *group = malloc((size_t)M.n * sizeof *group),
+            *perm = malloc((size_t)M.n * sizeof *perm);
+    double *x = positions(&M, 30, 1);
+    for (int32_t e = 0; e < M.n; e++)
+        group[e] = (e / 3 - 450) * 1000003; /* negative ones as well */
+    for (int k = 0; k < 2; k++) {
+        qc_analyze_options options = with(ordering[k]);
+        options.group = group;
+        options.position = k == 1 ? x : NULL;
+        assert_int_equal(qc__order(ctx, pattern_of(&M), &options, perm), QC_OK);
+        check_permutation(&M, perm);
+        for (int32_t i = 0; i < M.n; i += 3)
+            assert_true(perm[i] / 3 == perm[i + 1] / 3 && perm[i] / 3 == perm[i + 2] / 3);
+    }
+    free(x);
+    free(group);
+    free(perm);
+    free_matrix(&M);
+    qc_ctx_free(ctx);
+}
+
+/* Each row of a torus thrice: the three have the same neighbours. */
+static void indistinguishable_rows_are_found(void **state) {
+    (void)state;
+    qc_ctx *ctx = new_ctx(1);
+    test_matrix T = torus(20, false);
+    const int32_t n = 3 * T.n;
+    int64_t *colptr = malloc(((size_t)n + 1) * sizeof *colptr), q = 0;
+    int32_t *row = malloc((size_t)T.colptr[T.n] * 9 * sizeof *row), count = 0;
+    for (int32_t j = 0; j < n; j++) { /* row i of T becomes i, i + T.n, i + 2 T.n */
+        colptr[j] = q;
+        for (int32_t i = 0; i <= j; i++) {
+            const int32_t a = i % T.n, b = j % T.n;
+            bool present = false;
+            const int32_t lo = a < b ? a : b, hi = a < b ? b : a;
+            for (int64_t p = T.colptr[hi]; p < T.colptr[hi + 1]; p++) present |= T.row[p] == lo;
+            if (present) row[q++] = i;
+        }
+    }
+    colptr[n] = q;
+    int32_t *group = malloc((size_t)n * sizeof *group), *perm = malloc((size_t)n * sizeof *perm);
+    const qc__pattern A = {n, colptr, row};
+    assert_int_equal(qc__find_groups(ctx, A, NULL, group, &count), QC_OK);
+    assert_int_equal(count, T.n);
+    for (int32_t i = 0; i < n; i++) assert_int_equal(group[i], i % T.n);
+    const qc_analyze_options options = with(QC_ORDER_QUOTIENT);
+    assert_int_equal(qc__order(ctx, A, &options, perm), QC_OK);
+    for (int32_t i = 0; i < n; i += 3) assert_int_equal(perm[i] % T.n, perm[i + 2] % T.n);
+    free(group);
+    free(perm);
+    free(colptr);
+    free(row);
+    free_matrix(&T);
+    qc_ctx_free(ctx);
+}
+
+static void bad_hints_are_named(void **state) {
+    (void)state;
+    qc_ctx *ctx = new_ctx(1);
+    test_matrix M = torus(4, true);
+    const qc_hermitian A = hermitian(&M);
+    qc_symbolic *S = NULL;
+    double *x = positions(&M, 4, 1);
+    qc_analyze_options options = with(QC_ORDER_DISSECTION);
+    options.position = x;
+    x[3 * 5 + 1] = NAN;
+    assert_int_equal(qc_analyze(ctx, &A, &options, &S), QC_ERR_ARGUMENT);
+    assert_int_equal(qc_ctx_error(ctx)->where, 5);
+    options.ordering = QC_ORDER_AMD;
+    assert_int_equal(qc_analyze(ctx, &A, &options, &S), QC_ERR_ARGUMENT);
+    options.position = NULL;
+    options.group = M.row;
+    assert_int_equal(qc_analyze(ctx, &A, &options, &S), QC_ERR_ARGUMENT);
+    options.group = NULL;
+    options.ordering = 77;
+    assert_int_equal(qc_analyze(ctx, &A, &options, &S), QC_ERR_ARGUMENT);
+    assert_null(S);
+    free(x);
+    free_matrix(&M);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_pattern_gets_a_permutation),
@@ -241,6 +364,10 @@ int main(void) {
         cmocka_unit_test(same_order_for_any_number_of_threads),
         cmocka_unit_test(cancel_at_every_report),
         cmocka_unit_test(every_allocation_may_fail),
+        cmocka_unit_test(unit_of_positions_does_not_matter),
+        cmocka_unit_test(groups_stay_together),
+        cmocka_unit_test(indistinguishable_rows_are_found),
+        cmocka_unit_test(bad_hints_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
