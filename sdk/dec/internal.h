@@ -68,8 +68,23 @@ typedef struct qc__system {
  * where = element. */
 qc_status qc__system_create(qc_ctx *ctx, const qc_solver *solver, const qc_stiffness *stiffness,
                             int32_t n_elements, const char *element, qc__system *out);
+/* New values of the same pattern; on error the system can only be freed. */
+qc_status qc__system_update(qc_ctx *ctx, qc__system *system, const qc_stiffness *stiffness,
+                            const char *element);
 void qc__system_free(qc__system *system);
 /* Overwrites the right-hand side x (n_elements) by the solution, zero where a value is fixed. */
 qc_status qc__system_solve(qc_ctx *ctx, const qc__system *system, qc_complex *x);
+
+/* L* of a covering with its factor, for several calls with other cotangents: the analysis is done
+ * once. Starts as zeros; belongs to one covering and one solver. */
+typedef struct qc__curl_system {
+    qc_stiffness *stiffness; /* NULL = not made yet */
+    qc__system system;
+} qc__curl_system;
+void qc__curl_system_free(qc__curl_system *kept);
+/* qc_hodge_remove_curl with a system that is kept; on error it can only be freed. */
+qc_status qc__remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
+                          const qc_solver *solver, qc__curl_system *kept, const qc_complex *z,
+                          qc_complex *out, qc_complex *v, double *energy);
 
 #endif

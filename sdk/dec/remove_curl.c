@@ -80,29 +80,38 @@ static qc_status remove_passes(qc_ctx *ctx, const qc_cover *cover, const double 
     }
 }
 
-static qc_status run(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
-                     const qc_solver *solver, work *w) {
-    qc_stiffness *stiffness = NULL;
-    qc_status status = qc_form_weak_curl_edges(ctx, cover, w->form, w->r);
-    if (status == QC_OK) status = qc_stiffness_edges(ctx, cover, cotangent, &stiffness);
+void qc__curl_system_free(qc__curl_system *kept) {
+    if (kept->stiffness) qc__system_free(&kept->system);
+    qc_stiffness_free(kept->stiffness);
+}
+
+/* Makes the system, or gives it the values for other cotangents. */
+static qc_status prepare(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
+                         const qc_solver *solver, qc__curl_system *kept) {
+    qc_stiffness *stiffness = NULL, *old = kept->stiffness;
+    qc_status status = qc_stiffness_edges(ctx, cover, cotangent, &stiffness);
     if (status != QC_OK) return status;
-    qc__system system;
-    status = qc__system_create(ctx, solver, stiffness, cover->mesh->n_edges, "edge", &system);
-    if (status == QC_OK) {
-        status = remove_passes(ctx, cover, cotangent, &system, w);
-        qc__system_free(&system);
+    status = old ? qc__system_update(ctx, &kept->system, stiffness, "edge")
+                 : qc__system_create(ctx, solver, stiffness, cover->mesh->n_edges, "edge",
+                                     &kept->system);
+    if (status != QC_OK && !old) {
+        qc_stiffness_free(stiffness);
+        return status;
     }
-    qc_stiffness_free(stiffness);
+    qc_stiffness_free(old);
+    kept->stiffness = stiffness;
     return status;
 }
 
-qc_status qc_hodge_remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
-                               const qc_solver *solver, const qc_complex *z, qc_complex *out,
-                               qc_complex *v, double *energy) {
+qc_status qc__remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
+                          const qc_solver *solver, qc__curl_system *kept, const qc_complex *z,
+                          qc_complex *out, qc_complex *v, double *energy) {
     const qc_mesh *m = cover->mesh;
     work w = {0};
     qc_status status = work_create(ctx, m, z, &w) ? QC_OK : QC_ERR_NOMEM;
-    if (status == QC_OK) status = run(ctx, cover, cotangent, solver, &w);
+    if (status == QC_OK) status = qc_form_weak_curl_edges(ctx, cover, w.form, w.r);
+    if (status == QC_OK) status = prepare(ctx, cover, cotangent, solver, kept);
+    if (status == QC_OK) status = remove_passes(ctx, cover, cotangent, &kept->system, &w);
     if (status == QC_OK) {
         double sum = 0;
         for (int32_t e = 0; e < m->n_edges; e++)
@@ -112,5 +121,15 @@ qc_status qc_hodge_remove_curl(qc_ctx *ctx, const qc_cover *cover, const double 
         for (int32_t e = 0; v && e < m->n_edges; e++) v[e] = w.v[e];
     }
     work_free(&w);
+    return status;
+}
+
+qc_status qc_hodge_remove_curl(qc_ctx *ctx, const qc_cover *cover, const double *cotangent,
+                               const qc_solver *solver, const qc_complex *z, qc_complex *out,
+                               qc_complex *v, double *energy) {
+    qc__curl_system system = {0};
+    const qc_status status =
+        qc__remove_curl(ctx, cover, cotangent, solver, &system, z, out, v, energy);
+    qc__curl_system_free(&system);
     return status;
 }

@@ -29,35 +29,37 @@ static qc_status name_pivot(qc_ctx *ctx, const qc__system *s, const char *elemen
     return QC_ERR_NOT_POSDEF;
 }
 
-static qc_status factorise(qc_ctx *ctx, qc__system *s) {
+static qc_status factorise(qc_ctx *ctx, qc__system *s, const char *element) {
     qc_hermitian A = s->stiffness->A;
+    scale_matrix(&A, s->scale, s->val);
     A.val = s->val;
-    qc_status status = qc_solver_check(ctx, s->solver);
-    if (status == QC_OK) status = s->solver->analyze(s->solver, ctx, &A, NULL, &s->factor);
-    if (status == QC_OK) status = s->solver->factorize(ctx, s->factor, &A);
-    return status;
+    const qc_status status = s->solver->factorize(ctx, s->factor, &A);
+    return status == QC_ERR_NOT_POSDEF ? name_pivot(ctx, s, element) : status;
 }
 
 qc_status qc__system_create(qc_ctx *ctx, const qc_solver *solver, const qc_stiffness *stiffness,
                             int32_t n_elements, const char *element, qc__system *out) {
     const qc_hermitian *A = &stiffness->A;
     qc__system s = {stiffness, solver ? solver : &qc_solver_builtin, n_elements, NULL, NULL, NULL};
-    qc_status status = QC_OK;
-    if (A->n > 0) {
+    qc_status status = qc_solver_check(ctx, s.solver);
+    if (status == QC_OK && A->n > 0) {
         s.scale = QC__NEW(ctx, double, A->n);
         s.val = QC__NEW(ctx, qc_complex, A->colptr[A->n]);
         status = s.scale && s.val ? QC_OK : QC_ERR_NOMEM;
-    }
-    if (status == QC_OK && A->n > 0) {
-        scale_matrix(A, s.scale, s.val);
-        status = factorise(ctx, &s);
-        if (status == QC_ERR_NOT_POSDEF) status = name_pivot(ctx, &s, element);
+        if (status == QC_OK) status = s.solver->analyze(s.solver, ctx, A, NULL, &s.factor);
+        if (status == QC_OK) status = factorise(ctx, &s, element);
     }
     if (status != QC_OK)
         qc__system_free(&s);
     else
         *out = s;
     return status;
+}
+
+qc_status qc__system_update(qc_ctx *ctx, qc__system *s, const qc_stiffness *stiffness,
+                            const char *element) {
+    s->stiffness = stiffness;
+    return stiffness->A.n > 0 ? factorise(ctx, s, element) : QC_OK;
 }
 
 void qc__system_free(qc__system *s) {

@@ -1,9 +1,9 @@
 /* The Hodge step: from a matched cross field to a locally integrable field and its integral on the
  * cut surface (thesis 4.1; 2007 paper, section 4, eq. (9)). */
-#include "sdk/base/internal.h"
 #include <math.h>
 #include <qc/map.h>
 #include <string.h>
+#include "sdk/dec/internal.h"
 
 static void seamless_map_destroy(qc_object *object) {
     qc_seamless_map *map = (qc_seamless_map *)object;
@@ -58,6 +58,7 @@ typedef struct hodge {
     const qc_mesh *mesh;
     const int32_t *index4; /* n_vertices */
     const qc_solver *solver;
+    qc__curl_system system; /* L*, kept from round to round */
     qc_cover cover;
     double *cotangent;  /* 3 n_faces */
     double *compliance; /* 3 n_faces: cotangents over the weights */
@@ -73,8 +74,8 @@ typedef struct hodge {
 static qc_status project(hodge *q) {
     const int64_t n_corners = 3 * (int64_t)q->mesh->n_faces;
     for (int64_t c = 0; c < n_corners; c++) q->compliance[c] = q->cotangent[c] / q->weight[c / 3];
-    qc_status status = qc_hodge_remove_curl(q->ctx, &q->cover, q->compliance, q->solver, q->frame,
-                                            q->z, NULL, NULL);
+    qc_status status = qc__remove_curl(q->ctx, &q->cover, q->compliance, q->solver, &q->system,
+                                       q->frame, q->z, NULL, NULL);
     double residual = 0;
     if (status == QC_OK)
         status = qc_form_integrate(q->ctx, &q->cover, q->cut, q->face_turn, q->z, q->f, &residual);
@@ -208,6 +209,7 @@ qc_status qc_seamless_map_create(qc_ctx *ctx, const qc_matching *matching, const
         void *const blocks[] = {q.weight, q.z, q.f, q.cut, q.face_turn, map};
         for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     }
+    qc__curl_system_free(&q.system);
     qc__free(q.cotangent);
     qc__free(q.compliance);
     qc__free(q.frame);
