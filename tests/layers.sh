@@ -6,7 +6,8 @@ grep -rEHn '^[ \t]*#[ \t]*include' --include='*.[ch]' --include='*.cpp' --includ
 BEGIN {
     may["base"] = "base"; may["sparse"] = "base sparse"; may["mesh"] = "base mesh"
     may["shape"] = "base sparse mesh shape"; may["cover"] = "base sparse mesh cover"
-    may["dec"] = may["cover"] " dec"; may["field"] = may["dec"] " field"; may["map"] = may["field"] " map"
+    may["dec"] = may["cover"] " dec"; may["field"] = may["dec"] " field"; may["optimize"] = may["field"] " optimize"
+    may["map"] = may["optimize"] " map"
     may["pipeline"] = "base pipeline"; may["remesh"] = may["map"] " shape pipeline remesh"
     may["qc"] = may["remesh"] " qc"   # the umbrella header
 }

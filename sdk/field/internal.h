@@ -67,6 +67,23 @@ void qc__field_match(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *rho, co
 double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
                          int32_t p);
 
+/* The matrix (5.4) of the smoothing energy, factorised. It does not depend on the matching. */
+typedef struct qc__smoother {
+    const qc_mesh *mesh;
+    qc__connection c;
+    qc__face_pattern pattern;
+    double lambda;
+    double *pull;   /* n_faces: (1 - lambda) w A / l^2                                        */
+    int32_t *fixed; /* n_components: face with alpha = 0, -1 = none                           */
+    double *value;  /* of the matrix                                                          */
+    double *theta, *alpha;   /* n_edges, n_faces: work space of the solves                    */
+    const qc_complex *guide; /* n_faces                                                       */
+    qc_factor *factor;
+} qc__smoother;
+qc_status qc__smoother_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
+                              const uint8_t *trusted, double lambda, qc__smoother *out);
+void qc__smoother_free(qc__smoother *smoother);
+
 /* Shape operator of a face in its frame, [a b; b d]: larger |eigenvalue| first in kappa[2]. */
 qc__cplx qc__principal(double a, double b, double d, double kappa[2]);
 

@@ -18,20 +18,7 @@
  * alignment, one face fixed: otherwise the matrix is singular to working precision. */
 #define ALIGNMENT_MIN 1e-9
 
-typedef struct smoother {
-    const qc_mesh *mesh;
-    qc__connection c;
-    qc__face_pattern pattern;
-    double lambda;
-    double *pull;   /* n_faces: (1 - lambda) w A / l^2                                        */
-    int32_t *fixed; /* n_components: face with alpha = 0, -1 = none                           */
-    double *value;  /* of the matrix                                                          */
-    double *theta, *alpha;
-    const qc_complex *guide; /* n_faces                                                       */
-    qc_factor *factor;
-} smoother;
-
-static void smoother_free(smoother *s) {
+void qc__smoother_free(qc__smoother *s) {
     qc__connection_free(&s->c);
     qc__face_pattern_free(&s->pattern);
     qc__free(s->pull);
@@ -42,12 +29,13 @@ static void smoother_free(smoother *s) {
     qc_factor_free(s->factor);
 }
 
-static bool is_fixed(const smoother *s, int32_t t) {
+static bool is_fixed(const qc__smoother *s, int32_t t) {
     return s->fixed[s->mesh->face_component[t]] == t;
 }
 
 /* Weights of the alignment term and the faces which must be fixed for want of it. */
-static qc_status set_pull(qc_ctx *ctx, smoother *s, const double *weight, const uint8_t *trusted) {
+static qc_status set_pull(qc_ctx *ctx, qc__smoother *s, const double *weight,
+                          const uint8_t *trusted) {
     const qc_mesh *mesh = s->mesh;
     double l = qc__reference_length(mesh);
     double *alignment = QC__ZERO(ctx, double, mesh->n_components);
@@ -77,7 +65,7 @@ static qc_status set_pull(qc_ctx *ctx, smoother *s, const double *weight, const 
 }
 
 /* (5.4); a fixed face keeps its diagonal only. */
-static void fill_matrix(smoother *s) {
+static void fill_matrix(qc__smoother *s) {
     const qc_mesh *mesh = s->mesh;
     const int64_t *colptr = s->pattern.colptr;
     memset(s->value, 0, (size_t)colptr[mesh->n_faces] * sizeof *s->value);
@@ -93,7 +81,7 @@ static void fill_matrix(smoother *s) {
     }
 }
 
-static qc_status factorise(qc_ctx *ctx, smoother *s) {
+static qc_status factorise(qc_ctx *ctx, qc__smoother *s) {
     qc_symmetric A = {s->mesh->n_faces, s->pattern.colptr, s->pattern.row, s->value};
     qc_symbolic *symbolic = NULL;
     qc_status status = qc_analyze_real(ctx, &A, NULL, &symbolic);
@@ -102,7 +90,8 @@ static qc_status factorise(qc_ctx *ctx, smoother *s) {
     return status;
 }
 
-static qc_status prepare(qc_ctx *ctx, smoother *s, const double *weight, const uint8_t *trusted) {
+static qc_status prepare(qc_ctx *ctx, qc__smoother *s, const double *weight,
+                         const uint8_t *trusted) {
     const qc_mesh *mesh = s->mesh;
     qc_status status = qc__connection_create(ctx, mesh, &s->c);
     if (!status) status = qc__face_pattern_create(ctx, mesh, &s->pattern);
@@ -119,12 +108,23 @@ static qc_status prepare(qc_ctx *ctx, smoother *s, const double *weight, const u
     return factorise(ctx, s);
 }
 
+qc_status qc__smoother_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
+                              const uint8_t *trusted, double lambda, qc__smoother *out) {
+    qc__smoother s = {.mesh = mesh, .lambda = lambda < LAMBDA_MIN ? LAMBDA_MIN : lambda};
+    const qc_status status = prepare(ctx, &s, weight, trusted);
+    if (status)
+        qc__smoother_free(&s);
+    else
+        *out = s;
+    return status;
+}
+
 /* Angle of cross x against its guide, modulo pi/2. */
 static double deviation(qc_complex x, qc_complex guide) {
     return qc__arg(qc__fourth(qc__c(x) * conj(qc__c(guide)))) / 4;
 }
 
-static void fill_right_hand_side(smoother *s, const qc_complex *x) {
+static void fill_right_hand_side(qc__smoother *s, const qc_complex *x) {
     const qc_mesh *mesh = s->mesh;
     for (int32_t t = 0; t < mesh->n_faces; t++)
         s->alpha[t] = s->pull[t] > 0 ? -s->pull[t] * deviation(x[t], s->guide[t]) : 0;
@@ -139,7 +139,7 @@ static void fill_right_hand_side(smoother *s, const qc_complex *x) {
 }
 
 /* One round; *changed: the straightest matching differs from the one solved for. */
-static qc_status smooth_round(qc_ctx *ctx, smoother *s, qc_complex *x, bool *changed) {
+static qc_status smooth_round(qc_ctx *ctx, qc__smoother *s, qc_complex *x, bool *changed) {
     const qc_mesh *mesh = s->mesh;
     fill_right_hand_side(s, x);
     qc_status status = qc_solve_real(ctx, s->factor, 1, s->alpha);
@@ -163,12 +163,13 @@ qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *gu
     if (!(lambda >= 0 && lambda <= 1))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "lambda = %g is not in [0, 1]", lambda);
     if (rounds < 1) return QC_OK;
-    smoother s = {.mesh = mesh, .lambda = lambda < LAMBDA_MIN ? LAMBDA_MIN : lambda};
-    s.guide = guide ? guide : x; /* x itself changes at the very end only */
+    qc__smoother s = {.mesh = NULL};
     qc_complex *result = QC__NEW(ctx, qc_complex, mesh->n_faces);
-    qc_status status = result ? prepare(ctx, &s, weight, trusted) : QC_ERR_NOMEM;
+    qc_status status =
+        result ? qc__smoother_create(ctx, mesh, weight, trusted, lambda, &s) : QC_ERR_NOMEM;
     if (!status) {
         bool changed = true;
+        s.guide = guide ? guide : x; /* x itself changes at the very end only */
         memcpy(result, x, (size_t)mesh->n_faces * sizeof *x);
         qc__field_match(ctx, mesh, s.c.rho, x, NULL, s.theta);
         for (int32_t i = 0; !status && changed && i < rounds; i++) {
@@ -177,7 +178,7 @@ qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *gu
         }
         if (!status) memcpy(x, result, (size_t)mesh->n_faces * sizeof *x);
     }
-    smoother_free(&s);
+    qc__smoother_free(&s);
     qc__free(result);
     return status;
 }

@@ -8,6 +8,7 @@
 #include <qc/field.h>
 #include <qc/map.h>
 #include <qc/mesh.h>
+#include <qc/optimize.h>
 #include <qc/pipeline.h>
 #include <qc/plugin.h>
 #include <qc/remesh.h>

@@ -1,0 +1,92 @@
+/* qc/optimize.h - placing branch points by the curl they cause (thesis chapter 6).
+ *
+ * The distortion E_D = 1/2 |X_C|^2 of a frame field is a function of its matching: the matching
+ * fixes the smoothest field (5.3) and the stiffness matrix L* (6.1). A flip adds a turn to the
+ * matching of one interior edge; it moves, creates or cancels branch points at the two ends.
+ * Thread rule: a qc_distortion is mutable and belongs to one thread at a time. */
+#ifndef QC_OPTIMIZE_H
+#define QC_OPTIMIZE_H
+
+#include <qc/field.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* --- distortion as a function of the matching ------------------------------------------------- */
+
+typedef struct qc_distortion qc_distortion;
+
+/* m_edge += step, step = +1 or -1. */
+typedef struct qc_flip_step {
+    int32_t edge, step;
+} qc_flip_step;
+
+/* Starts at the given matching, whose field counts as the minimiser of (5.3) for it: alignment
+ * pulls towards where the field is in the trusted faces with the field's weights, lambda as in
+ * qc_field_smooth. sizing NULL = length 1. Factorises both systems. Edges of components in which
+ * the holonomy is trivial cannot be flipped. Errors: ARGUMENT, NOT_POSDEF (faces without area),
+ * NOMEM, CANCELLED. */
+QC_API qc_status qc_distortion_create(qc_ctx *ctx, const qc_matching *matching,
+                                      const qc_sizing *sizing, double lambda, qc_distortion **out);
+QC_API void qc_distortion_free(qc_distortion *distortion);
+
+typedef struct qc_distortion_state {
+    double energy; /* E_D of the present matching, in parameter units                          */
+    double whole;  /* 1/2 |X|^2 of the field: E_D_rel = energy / whole                         */
+    int32_t branch_points; /* interior vertices of index other than 0                          */
+    int64_t evaluations, changes; /* of E_D; of accepted flips                                 */
+    const int8_t *m;              /* n_edges, borrowed until the next change                   */
+    const int32_t *index4;        /* n_vertices, borrowed                                      */
+} qc_distortion_state;
+QC_API void qc_distortion_get_state(const qc_distortion *distortion, qc_distortion_state *state);
+
+/* Whether the edge can be flipped: interior, of a component without trivial holonomy. */
+QC_API bool qc_distortion_can_flip(const qc_distortion *distortion, int32_t edge);
+
+/* E_D after each of n flips made alone, exactly (to rounding); infinity where L* would become
+ * singular. The state stays. Many at a time cost less each than one. Errors: ARGUMENT (where = edge
+ * which cannot be flipped), NOMEM, CANCELLED. */
+QC_API qc_status qc_distortion_try(qc_ctx *ctx, qc_distortion *distortion, int32_t n,
+                                   const qc_flip_step *flip, double *energy);
+
+/* All n flips together when E_D is then below `limit`; otherwise everything stays bit for bit.
+ * *accepted and *energy (the value found, infinity as above) may be NULL. Errors as above. */
+QC_API qc_status qc_distortion_change(qc_ctx *ctx, qc_distortion *distortion, int32_t n,
+                                      const qc_flip_step *flip, double limit, double *energy,
+                                      bool *accepted);
+
+/* share (n_edges): |Re(conj(v_e) r_e)| / 2, the share of the edge in E_D; theta (n_edges):
+ * curvature of the present field; either may be NULL. 0 on the boundary. Also looks for drift of
+ * the updated factor and factorises again where there is any. Errors: NOMEM, CANCELLED. */
+QC_API qc_status qc_distortion_shares(qc_ctx *ctx, qc_distortion *distortion, double *share,
+                                      double *theta);
+
+/* The present matching with its field (of the same mesh, weights and flags). */
+QC_API qc_status qc_distortion_matching(qc_ctx *ctx, const qc_distortion *distortion,
+                                        qc_matching **out);
+
+/* --- curl reduction (Algorithm 6.1, steps 2 and 3) -------------------------------------------- */
+
+typedef struct qc_reduce_options {
+    uint32_t struct_size;
+    int32_t create;      /* 1: new branch points may appear; 0: they move and cancel only       */
+    int64_t evaluations; /* at most so many                                                     */
+    int64_t patience;    /* ends after so many trials in a row without gain                     */
+    double spacing; /* branch points do not move nearer to each other than this, in units of the
+                       mesh; 0 = any distance                                                   */
+    double gain;    /* smallest gain of a flip that counts, in parameter units (as E_D)         */
+} qc_reduce_options;
+#define QC_REDUCE_OPTIONS_INIT                                                                     \
+    { sizeof(qc_reduce_options), 0, 20000, 400, 0.0, 0.0 }
+
+/* Flips the edges of largest share as long as E_D falls; every flip that stays was verified by an
+ * exact evaluation. Indices stay within -2/4 and 1/4 where they are. Deterministic. CANCELLED: the
+ * distortion is valid and the best so far. Errors: NOMEM, CANCELLED. */
+QC_API qc_status qc_distortion_reduce(qc_ctx *ctx, qc_distortion *distortion,
+                                      const qc_reduce_options *options);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

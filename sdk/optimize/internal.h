@@ -1,0 +1,68 @@
+/* Shared inside sdk/optimize: the state of the distortion evaluator and its kernels. */
+#ifndef QC_OPTIMIZE_INTERNAL_H
+#define QC_OPTIMIZE_INTERNAL_H
+
+#include <qc/optimize.h>
+
+#include "sdk/field/internal.h"
+
+/* Flips evaluated at a time: right-hand sides which share a pass over the factors. */
+enum { QC__TRIALS = 8 };
+
+struct qc_distortion {
+    const qc_matching *start; /* retained */
+    const qc_mesh *mesh;
+    qc__smoother smoother;
+    double *cotangent;    /* 3 n_faces                                                         */
+    qc_complex *side;     /* 3 n_faces: e_tk / length of the face                              */
+    int8_t *m;            /* n_edges                                                           */
+    int32_t *index4;      /* n_vertices                                                        */
+    double *bend;         /* n_faces: right-hand side of the smoothing since the start         */
+    double *alpha;        /* n_faces: the rotations it causes                                  */
+    qc_complex *x;        /* n_faces: the field                                                */
+    qc_stiffness *matrix; /* L*, values kept up to date                                        */
+    int32_t n;            /* its size                                                          */
+    uint8_t *frozen;      /* n_components: closed with trivial holonomy at the start           */
+    qc_factor *factor;    /* of L*                                                             */
+    qc_complex *r;        /* n: weak curl                                                      */
+    bool stale; /* the factor is not that of the matrix: a factorisation was interrupted        */
+    double energy, whole;
+    int32_t branch_points;
+    int64_t evaluations, changes, updates; /* updates: flips in the factor                      */
+    double *angle;      /* n_faces QC__TRIALS: work space of trials                             */
+    qc_complex *curl;   /* n QC__TRIALS                                                         */
+    qc_complex *turned; /* n_faces QC__TRIALS                                                   */
+    int32_t *reach;     /* 2 n                                                                  */
+    qc_complex *sparse; /* 2 n                                                                  */
+};
+
+/* Row k of L* changes by D(k, l) = d_l, D(k, m) = d_m and the conjugates. n: entries, 0 to 2. */
+typedef struct qc__coupling {
+    int32_t k, n, row[2];
+    qc_complex d[2];
+} qc__coupling;
+/* What m_e += step does to L* at the present matching. */
+qc__coupling qc__flip_coupling(const qc_distortion *d, qc_flip_step flip);
+
+/* out_t = x_t exp(i angle_t); may be in place. */
+void qc__rotate_field(int32_t n, const double *angle, const qc_complex *x, qc_complex *out);
+/* Weak curl of the field x for the matching of d, by unknown; edge -1 or with m += step there. */
+void qc__weak_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step flip, qc_complex *r);
+/* The right-hand side of the smoothing changes by +-value at the two faces of the edge. */
+double qc__flip_bend(const qc_distortion *d, qc_flip_step flip, int32_t *s, int32_t *t);
+bool qc__face_is_fixed(const qc_distortion *d, int32_t t);
+/* The factor of the matrix as it is. */
+qc_status qc__refresh_factor(qc_ctx *ctx, qc_distortion *d);
+qc_status qc__check_flips(qc_ctx *ctx, const qc_distortion *d, int32_t n, const qc_flip_step *flip);
+
+/* --- which flips may be made ------------------------------------------------------------------ */
+
+typedef struct qc__rules {
+    bool create;
+    double spacing;
+} qc__rules;
+/* Whether the flip keeps the rules at the present state: number and indices of branch points, and
+ * their distance. */
+bool qc__flip_allowed(const qc_distortion *d, const qc__rules *rules, qc_flip_step flip);
+
+#endif
