@@ -22,6 +22,13 @@ extern const qc_solver qm_solver;
 /* solver.c: solve without asking whether the last factorisation counts. */
 qc_status qm_solve(qc_ctx *ctx, qc_solver_state *state, int32_t nrhs, qc_complex *x);
 
+/* matrix.c: ARGUMENT unless columns ascend and end with the diagonal. */
+qc_status qm_check_pattern(qc_ctx *ctx, const qc_hermitian *A);
+void qm_write_pattern(const qc_hermitian *A, MUMPS_INT *irn, MUMPS_INT *jcn);
+void qm_write_values(const qc_hermitian *A, mumps_double_complex *a);
+bool qm_same_pattern(const qc_solver_state *state, const qc_hermitian *A);
+qc_status qm_order(qc_ctx *ctx, const qc_hermitian *A, MUMPS_INT *position);
+
 /* check.c: NOT_POSDEF when a diagonal entry is not positive; fills scale. */
 qc_status qm_check_diagonal(qc_ctx *ctx, qc_solver_state *state, const qc_hermitian *A);
 /* check.c: NOT_POSDEF when the factor is that of a matrix which is singular or has, as far as can
