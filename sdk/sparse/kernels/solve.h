@@ -6,7 +6,7 @@
 #define QC_SPARSE_KERNELS_SOLVE_H
 
 #include "sdk/sparse/internal.h"
-#include "sdk/sparse/kernels/vector.h"
+#include "sdk/sparse/kernels/entry.h"
 
 typedef struct panel {
     const double *L;
@@ -16,31 +16,6 @@ typedef struct panel {
 
 static inline panel panel_of(const qc_factor *F, const qc__solve_node *N) {
     return (panel){F->values + NC * N->panel, NC * (int64_t)(N->w + N->m), N->w, N->m};
-}
-
-/* y -= l x: two fused operations in this order in every kernel, so that all of them agree bit for
- * bit. */
-static inline void subtract_entry(const double *l, const double *x, double *y) {
-    if (NC == 1) {
-        y[0] = s_fnma(l[0], x[0], y[0]);
-    } else {
-        const double re = s_fma(x[NC - 1], l[NC - 1], y[0]);
-        const double im = s_fnma(x[NC - 1], l[0], y[NC - 1]);
-        y[0] = s_fnma(x[0], l[0], re);
-        y[NC - 1] = s_fnma(x[0], l[NC - 1], im);
-    }
-}
-
-/* y -= conj(l) x */
-static inline void subtract_conjugate(const double *l, const double *x, double *y) {
-    if (NC == 1) {
-        y[0] = s_fnma(l[0], x[0], y[0]);
-    } else {
-        const double re = s_fnma(l[NC - 1], x[NC - 1], y[0]);
-        const double im = s_fma(l[NC - 1], x[0], y[NC - 1]);
-        y[0] = s_fnma(l[0], x[0], re);
-        y[NC - 1] = s_fnma(l[0], x[NC - 1], im);
-    }
 }
 
 /* y_i = x_i^{-1/2} for n <= LANES numbers */

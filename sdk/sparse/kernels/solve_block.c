@@ -16,7 +16,7 @@ enum {
 };
 
 /* y -= l x for one row, or y -= conj(l) x. The terms with the imaginary part of x come first, as in
- * subtract_entry. */
+ * e_subtract. */
 static inline void subtract_row(const bool conjugate, const double *l, const vec *x, vec *y) {
     const vec re = v_set(l[0]);
     if (NC == 2) {

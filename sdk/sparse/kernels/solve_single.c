@@ -7,12 +7,7 @@ enum { GROUP = 4, AHEAD = 512 };
 /* y (n doubles up to a full vector) -= L x for G columns of L; fresh: y is taken as zero. Past the
  * end of a column the next one is read, past the end of the factor its padding. */
 static inline void subtract_columns(const int G, bool fresh, int64_t n, const double *L, int64_t ld,
-                                    const double *x, double *y) {
-    vec re[GROUP], im[GROUP];
-    for (int g = 0; g < G; g++) {
-        re[g] = v_set(x[NC * g]);
-        if (NC == 2) im[g] = v_alternate(x[NC * g + NC - 1]);
-    }
+                                    const vec *re, const vec *im, double *y) {
     for (int64_t i = 0; i < n; i += LANES) {
         vec sum = fresh ? v_zero() : v_load(y + i);
         for (int g = 0; g < G; g++) {
@@ -25,24 +20,25 @@ static inline void subtract_columns(const int G, bool fresh, int64_t n, const do
     }
 }
 
-/* x <- L^{-1} x for the triangle of G columns */
-static inline void forward_triangle(const int G, const double *L, int64_t ld, double *x) {
-    double t[NC * GROUP];
-    for (int k = 0; k < NC * G; k++) t[k] = x[k];
-    for (int j = 0; j < G; j++)
-        for (int i = j + 1; i < G; i++) subtract_entry(L + j * ld + NC * i, t + NC * j, t + NC * i);
-    for (int k = NC; k < NC * G; k++) x[k] = t[k];
-}
-
+/* Columns [k, k + G): own triangle, own rows after the group, rows below. */
 static inline void forward_group(const int G, bool fresh, const panel *P, int64_t k, double *x,
                                  double *u) {
     const double *L = P->L + k * P->ld;
     const int64_t next = k + G;
-    forward_triangle(G, L + NC * k, P->ld, x + NC * k);
+    entry t[GROUP];
+    vec re[GROUP], im[GROUP];
+    for (int g = 0; g < G; g++) t[g] = e_load(x + NC * (k + g));
+    for (int j = 0; j < G; j++)
+        for (int i = j + 1; i < G; i++)
+            t[i] = e_subtract(e_load(L + j * P->ld + NC * (k + i)), t[j], t[i]);
+    for (int g = 0; g < G; g++) {
+        e_store(x + NC * (k + g), t[g]);
+        re[g] = v_set(e_re(t[g]));
+        im[g] = v_alternate(e_im(t[g]));
+    }
     if (next < P->w)
-        subtract_columns(G, false, NC * (P->w - next), L + NC * next, P->ld, x + NC * k,
-                         x + NC * next);
-    subtract_columns(G, fresh, NC * P->m, L + NC * P->w, P->ld, x + NC * k, u);
+        subtract_columns(G, false, NC * (P->w - next), L + NC * next, P->ld, re, im, x + NC * next);
+    subtract_columns(G, fresh, NC * P->m, L + NC * P->w, P->ld, re, im, u);
 }
 
 static inline void forward_panel(const panel *P, double *x, double *u) {
@@ -68,10 +64,8 @@ void KERNEL(qc__forward_panel)(const qc_factor *F, int32_t s, double *x, double 
     forward_panel(&P, x, u);
 }
 
-static inline void add_entry(const double *x, double *y) {
-    const double re = y[0] + x[0], im = NC == 2 ? y[NC - 1] + x[NC - 1] : 0;
-    y[0] = re;
-    if (NC == 2) y[NC - 1] = im;
+static inline void add_to(double *y, entry x) {
+    e_store(y, e_add(e_load(y), x));
 }
 
 static void clear(int64_t n, double *x) {
@@ -86,7 +80,7 @@ static void collect(const qc__rhs_block *B, int32_t s, double *sum) {
         const qc__solve_node *N = &S->solve.node[c];
         const int32_t *local = S->relative + N->below;
         for (int64_t i = 0; i < N->m; i++)
-            add_entry(B->area + NC * (N->to + i), sum + NC * local[i]);
+            add_to(sum + NC * local[i], e_load(B->area + NC * (N->to + i)));
     }
 }
 
@@ -96,16 +90,17 @@ static void forward_supernode(const qc__rhs_block *B, const qc__solve_node *N, d
     const panel P = panel_of(B->F, N);
     const int32_t *local = B->F->S->relative + N->below;
     double *Y = B->Y + NC * (int64_t)N->first;
-    for (int64_t k = 0; k < NC * P.w; k++) x[k] = Y[k] + sum[k];
+    for (int64_t k = 0; k < NC * P.w; k += NC)
+        e_store(x + k, e_add(e_load(Y + k), e_load(sum + k)));
     forward_panel(&P, x, u);
-    for (int64_t k = 0; k < NC * P.w; k++) Y[k] = x[k];
+    for (int64_t k = 0; k < NC * P.w; k += NC) e_store(Y + k, e_load(x + k));
     const double *below = sum + NC * P.w;
-    for (int64_t i = 0; i < P.m; i++) {
-        const int64_t at = NC * (N->leaves ? i : local[i]);
-        const double old[2] = {N->leaves ? 0 : to[at], N->leaves || NC == 1 ? 0 : to[at + NC - 1]};
-        to[at] = old[0] + (u[NC * i] + below[NC * i]);
-        if (NC == 2) to[at + 1] = old[1] + (u[NC * i + 1] + below[NC * i + 1]);
-    }
+    if (N->leaves)
+        for (int64_t i = 0; i < NC * P.m; i += NC)
+            e_store(to + i, e_add(e_load(u + i), e_load(below + i)));
+    else
+        for (int64_t i = 0; i < P.m; i++)
+            add_to(to + NC * local[i], e_add(e_load(u + NC * i), e_load(below + NC * i)));
     clear(NC * (P.w + P.m), sum);
 }
 
@@ -137,21 +132,6 @@ static inline void dot_columns(const int G, int64_t n, const double *L, int64_t 
     }
 }
 
-/* x <- x / D - sum, then L^{-H} x for the triangle of G columns */
-static inline void backward_triangle(const int G, const double *L, int64_t ld, const double *D,
-                                     const double *re, const double *im, double *x) {
-    double t[NC * GROUP];
-    for (int j = 0; j < G; j++) {
-        const double scale = 1 / D[j];
-        t[NC * j] = s_fma(x[NC * j], scale, -re[j]);
-        if (NC == 2) t[NC * j + NC - 1] = s_fma(x[NC * j + NC - 1], scale, -im[j]);
-    }
-    for (int i = G - 1; i > 0; i--)
-        for (int j = i - 1; j >= 0; j--)
-            subtract_conjugate(L + j * ld + NC * i, t + NC * i, t + NC * j);
-    for (int k = 0; k < NC * G; k++) x[k] = t[k];
-}
-
 /* Columns [k, k + G); t: values at the rows below. */
 static inline void backward_group(const int G, const panel *P, int64_t k, const double *D,
                                   const double *t, double *x) {
@@ -162,14 +142,20 @@ static inline void backward_group(const int G, const panel *P, int64_t k, const 
     dot_columns(G, NC * P->m, L + NC * P->w, P->ld, t, p, q);
     if (next < P->w) dot_columns(G, NC * (P->w - next), L + NC * next, P->ld, x + NC * next, p, q);
     /* conj(l) x = (l.re x.re + l.im x.im) + i (l.re x.im - l.im x.re) */
-    double re[GROUP], im[GROUP];
-    v_sum_four(p[0], p[1], p[2], p[3], re);
+    double sum[2 * GROUP];
+    entry y[GROUP];
+    v_sum_four(p[0], p[1], p[2], p[3], sum);
     if (NC == 2) {
         const vec sign = v_alternate(-1);
         for (int g = 0; g < G; g++) q[g] = v_mul(sign, q[g]);
-        v_sum_four(q[0], q[1], q[2], q[3], im);
+        v_sum_four(q[0], q[1], q[2], q[3], sum + GROUP);
     }
-    backward_triangle(G, L + NC * k, P->ld, D + k, re, im, x + NC * k);
+    for (int g = 0; g < G; g++)
+        y[g] = e_scale_subtract(1 / D[k + g], e_load(x + NC * (k + g)), e_pair(sum + g, GROUP));
+    for (int i = G - 1; i > 0; i--)
+        for (int j = i - 1; j >= 0; j--)
+            y[j] = e_subtract_conjugate(e_load(L + j * P->ld + NC * (k + i)), y[i], y[j]);
+    for (int g = 0; g < G; g++) e_store(x + NC * (k + g), y[g]);
 }
 
 /* t_i = Y at row_i, up to the next multiple of the vector length (repeating the last row). */
