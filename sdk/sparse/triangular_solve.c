@@ -89,24 +89,33 @@ typedef struct round_shape {
     int64_t width, blocks, threads;
 } round_shape;
 
-static bool allocate(qc_ctx *ctx, const qc_factor *F, round_shape shape, run *R, double **memory) {
+/* One allocation for each block and worker: every one is aligned, and the allocator is more likely
+ * to have such pieces at hand than their sum. */
+static bool allocate(qc_ctx *ctx, const qc_factor *F, round_shape shape, run *R) {
     const qc_symbolic *S = F->S;
     const int64_t row = F->components * shape.width;
-    const int64_t own = row * (S->n + S->solve.area);
-    const int64_t stack = row * (S->solve.stack + 3 * S->solve.work);
-    *memory = QC__NEW(ctx, double, own *shape.blocks + stack * shape.threads);
-    R->block = QC__NEW(ctx, qc__rhs_block, shape.blocks);
-    R->work = QC__NEW(ctx, double *, shape.threads);
-    if (!*memory || !R->block || !R->work) return false;
-    for (int64_t b = 0; b < shape.blocks; b++)
-        R->block[b] =
-            (qc__rhs_block){F, NULL, 0, *memory + b * own, *memory + b * own + row * S->n};
+    const int64_t own = row * (S->n + S->solve.area), scratch = 3 * row * S->solve.work;
+    R->block = QC__ZERO(ctx, qc__rhs_block, shape.blocks);
+    R->work = QC__ZERO(ctx, double *, shape.threads);
+    if (!R->block || !R->work) return false;
+    for (int64_t b = 0; b < shape.blocks; b++) {
+        double *Y = QC__NEW(ctx, double, own);
+        if (!Y) return false;
+        R->block[b] = (qc__rhs_block){F, NULL, 0, Y, Y + row * S->n};
+    }
     for (int64_t t = 0; t < shape.threads; t++) {
-        R->work[t] = *memory + own * shape.blocks + stack * t;
-        memset(R->work[t] + 3 * row * S->solve.work, 0,
-               (size_t)(row * S->solve.stack) * sizeof **R->work);
+        R->work[t] = QC__NEW(ctx, double, scratch + row * S->solve.stack);
+        if (!R->work[t]) return false;
+        memset(R->work[t] + scratch, 0, (size_t)(row * S->solve.stack) * sizeof **R->work);
     }
     return true;
+}
+
+static void release(run *R, round_shape shape) {
+    for (int64_t b = 0; R->block && b < shape.blocks; b++) qc__free(R->block[b].Y);
+    for (int64_t t = 0; R->work && t < shape.threads; t++) qc__free(R->work[t]);
+    qc__free(R->block);
+    qc__free(R->work);
 }
 
 static qc_status run_rounds(qc_ctx *ctx, run *R, round_shape shape, bool parallel, int64_t nrhs,
@@ -137,15 +146,12 @@ static qc_status solve(qc_ctx *ctx, const qc_factor *F, int32_t components, int3
     const double work = (double)S->panel[S->nsuper] * nrhs;
     const bool parallel = qc_ctx_threads(ctx) > 1 && work > parallel_entries;
     const int64_t width = nrhs == 1 ? 1 : QC__BLOCK, blocks = (nrhs + width - 1) / width;
-    const int64_t threads = parallel ? qc_ctx_threads(ctx) : 1, most = 2 * threads;
+    const int64_t threads = parallel ? qc_ctx_threads(ctx) : 1, most = threads;
     const round_shape shape = {width, blocks < most ? blocks : most, threads};
     run R = {&F->kernels->solve[width > 1], S, forward_only, 0, NULL, NULL};
-    double *memory = NULL;
-    status = allocate(ctx, F, shape, &R, &memory) ? run_rounds(ctx, &R, shape, parallel, nrhs, x)
-                                                  : QC_ERR_NOMEM;
-    qc__free(memory);
-    qc__free(R.block);
-    qc__free(R.work);
+    status =
+        allocate(ctx, F, shape, &R) ? run_rounds(ctx, &R, shape, parallel, nrhs, x) : QC_ERR_NOMEM;
+    release(&R, shape);
     return status;
 }
 
