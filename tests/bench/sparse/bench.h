@@ -25,6 +25,7 @@ typedef struct bench_matrix {
     qc_hermitian A; /* borrowed from stiffness */
     qc_stiffness *stiffness;
     int32_t (*path)[3]; /* n x 3: rows of the flip of each edge, row[0] = -1 when it has none */
+    double *position;   /* n x 3: midpoints of the edges */
     int32_t n_flips;
     bench_flip *flips;
 } bench_matrix;
@@ -52,7 +53,8 @@ bench_quality bench_order_quality(qc_ctx *ctx, const bench_matrix *M, const int3
 
 /* --- peers ------------------------------------------------------------------------------------ */
 
-enum { ORDER_GIVEN, ORDER_AMD, ORDER_DISSECTION };
+/* PLACED: dissection which is told where the rows are; ours only. */
+enum { ORDER_GIVEN, ORDER_AMD, ORDER_DISSECTION, ORDER_PLACED, ORDER_KINDS };
 
 /* Calls of one peer on its own state; NULL where it has no such operation. */
 typedef struct bench_peer {
@@ -196,15 +198,17 @@ typedef struct bench_effort {
 void bench_compare(qc_ctx *ctx, const bench_matrix *M, const bench_limits *l,
                    const bench_effort *effort, bench_comparison *out);
 
-enum { OURS, OURS_2, PEERS }; /* positions among the runners; columns are those from PEERS on */
+/* Positions among the runners: ours by one thread, by two, and by two with AMD (the last one only
+ * where each has its own ordering). Columns are those from L->peers on. */
+enum { OURS, OURS_2, OURS_AMD_2, MOST_OURS };
 typedef struct bench_lineup {
     const bench_matrix *M;
     const bench_limits *limits;
     const bench_effort *effort;
     bool own;              /* each with its own ordering */
     bench_quality quality; /* of our ordering            */
-    int n;
-    bench_runner runner[PEERS + MOST_COLUMNS];
+    int n, peers;
+    bench_runner runner[MOST_OURS + MOST_COLUMNS];
     bench_table *table;
 } bench_lineup;
 /* What was measured becomes rows of L->table, with the figures to be reached. */
@@ -213,9 +217,8 @@ void bench_analysis_rows(bench_lineup *L);
 void bench_factor_rows(bench_lineup *L);
 void bench_solve_rows(bench_lineup *L);
 void bench_update_rows(bench_lineup *L);
-/* Seconds, entries of L, operations, entries touched. */
-void bench_order_rows(bench_table *t, const char *const name[4], const double ours[4],
-                      const double metis[4], bool dissection);
+void bench_order_rows(bench_table *t, int ordering, double seconds, const bench_quality *q,
+                      double metis_seconds, const bench_quality *metis);
 
 /* --- arguments.c ------------------------------------------------------------------------------ */
 

@@ -7,12 +7,11 @@
 
 static void add_runner(bench_lineup *L, const char *label, const bench_peer *p, int ordering,
                        const int32_t *perm, uint32_t threads) {
-    if (L->n >= PEERS && L->effort->peers && p != &peer_quadcover &&
-        !strstr(L->effort->peers, p->name))
+    if (L->peers && L->effort->peers && p != &peer_quadcover && !strstr(L->effort->peers, p->name))
         return;
     L->runner[L->n++] = (bench_runner){
         .label = label, .peer = p, .ordering = ordering, .perm = perm, .threads = threads};
-    if (L->n > PEERS) L->table->column[L->table->columns++] = label;
+    if (L->peers) L->table->column[L->table->columns++] = label;
 }
 
 static void measure(bench_lineup *L) {
@@ -39,44 +38,33 @@ static void measure(bench_lineup *L) {
     if (parts & PART_UPDATE) bench_update_rows(L);
 }
 
-/* One of our orderings against METIS, in turns. */
-static void order_against_metis(qc_ctx *ctx, const bench_matrix *M, int which,
-                                const char *const name[4], bench_table *t) {
+enum { METIS = ORDER_KINDS, ORDERINGS }; /* after ours */
+
+/* Our orderings and METIS, in turns. */
+static void compare_orderings(qc_ctx *ctx, const bench_matrix *M, bench_table *t) {
     const int32_t repeat = M->faces < 200000 ? 3 : 1;
     int32_t *perm = NEW(int32_t, M->A.n);
-    double value[2][4];
-    bench_samples s[2] = {{0}, {0}};
-    bench_quality q[2] = {{0, 0, 0}, {0, 0, 0}};
+    bench_samples s[ORDERINGS] = {{0, 0, NULL}};
+    bench_quality q[ORDERINGS];
+    double seconds[ORDERINGS];
     for (int32_t i = 0; i < repeat; i++)
-        for (int metis = 0; metis < 2; metis++) {
+        for (int k = ORDER_AMD; k < ORDERINGS; k++) {
             const bench_duration begin = bench_clock();
-            metis ? order_metis(M, perm) : order_quadcover(M, which, perm);
+            k == METIS ? order_metis(M, perm) : order_quadcover(M, k, perm);
             const bench_duration end = bench_clock();
-            bench_sample(&s[metis], (bench_duration){end.wall - begin.wall, end.cpu - begin.cpu});
-            if (i == 0) q[metis] = bench_order_quality(ctx, M, perm);
+            bench_sample(&s[k], (bench_duration){end.wall - begin.wall, end.cpu - begin.cpu});
+            if (i == 0) q[k] = bench_order_quality(ctx, M, perm);
         }
-    for (int metis = 0; metis < 2; metis++) {
-        value[metis][0] = bench_median(&s[metis]).cpu;
-        value[metis][1] = q[metis].nnz;
-        value[metis][2] = q[metis].flops;
-        value[metis][3] = q[metis].touched;
-        free(s[metis].value);
+    for (int k = ORDER_AMD; k < ORDERINGS; k++) {
+        seconds[k] = bench_median(&s[k]).cpu;
+        free(s[k].value);
     }
-    bench_order_rows(t, name, value[0], value[1], which == ORDER_DISSECTION);
-    free(perm);
-}
-
-static void compare_orderings(qc_ctx *ctx, const bench_matrix *M, bench_table *t) {
-    static const char *const amd[4] = {"AMD: time", "AMD: entries of L", "AMD: operations",
-                                       "AMD: entries touched by a flip"};
-    static const char *const dissection[4] = {"dissection: time", "dissection: entries of L",
-                                              "dissection: operations",
-                                              "dissection: entries touched by a flip"};
     t->title = "Orderings";
     t->columns = 1;
     t->column[0] = "METIS";
-    order_against_metis(ctx, M, ORDER_AMD, amd, t);
-    order_against_metis(ctx, M, ORDER_DISSECTION, dissection, t);
+    for (int k = ORDER_AMD; k < METIS; k++)
+        bench_order_rows(t, k, seconds[k], &q[k], seconds[METIS], &q[METIS]);
+    free(perm);
 }
 
 static void finish(bench_lineup *L, bench_comparison *out) {
@@ -89,22 +77,27 @@ static void finish(bench_lineup *L, bench_comparison *out) {
 
 /* perm: the ordering for all, or NULL = each its own. */
 static void line_up(bench_lineup *L, const int32_t *perm) {
-    const int amd = perm ? ORDER_GIVEN : ORDER_AMD, own = perm ? ORDER_GIVEN : ORDER_DISSECTION;
+    const int amd = perm ? ORDER_GIVEN : ORDER_AMD, own = perm ? ORDER_GIVEN : ORDER_PLACED;
+    const int theirs = perm ? ORDER_GIVEN : ORDER_DISSECTION;
+    L->peers = 0;
     add_runner(L, "ours", &peer_quadcover, own, perm, 1);
     add_runner(L, "ours, 2 threads", &peer_quadcover, own, perm, 2);
+    if (!perm) add_runner(L, "ours, AMD, 2 threads", &peer_quadcover, amd, NULL, 2);
+    L->peers = L->n;
     add_runner(L, perm ? "CHOLMOD" : "CHOLMOD, AMD", &peer_cholmod, amd, perm, 1);
     add_runner(L, perm ? "CXSparse" : "CXSparse, AMD", &peer_cxsparse, amd, perm, 1);
-    if (!perm) add_runner(L, "CHOLMOD, METIS", &peer_cholmod, own, NULL, 1);
+    if (!perm) add_runner(L, "CHOLMOD, METIS", &peer_cholmod, theirs, NULL, 1);
     if (!perm) add_runner(L, "ours, AMD", &peer_quadcover, amd, NULL, 1);
 #ifdef BENCH_MUMPS
-    add_runner(L, perm ? "MUMPS" : "MUMPS, its choice", &peer_mumps, own, perm, 1);
+    add_runner(L, perm ? "MUMPS" : "MUMPS, its choice", &peer_mumps, theirs, perm, 1);
 #endif
 }
 
 static void compare(bench_lineup *L, const int32_t *perm, bench_comparison *out) {
     L->own = !perm;
     L->table = &out->table[perm ? TABLE_SAME : TABLE_OWN];
-    L->table->title = perm ? "The same ordering (AMD) for all" : "Each its own (ours: dissection)";
+    L->table->title =
+        perm ? "The same ordering (AMD) for all" : "Each its own (ours: with positions)";
     line_up(L, perm);
     measure(L);
     finish(L, out);
@@ -122,7 +115,7 @@ void bench_compare(qc_ctx *ctx, const bench_matrix *M, const bench_limits *l,
     order_quadcover(M, ORDER_AMD, perm);
     L.quality = bench_order_quality(ctx, M, perm);
     if (effort->same) compare(&L, perm, out);
-    order_quadcover(M, ORDER_DISSECTION, perm);
+    order_quadcover(M, ORDER_PLACED, perm);
     L.quality = bench_order_quality(ctx, M, perm);
     if (effort->own) compare(&L, NULL, out);
     free(perm);

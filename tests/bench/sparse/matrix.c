@@ -37,14 +37,19 @@ static qc_complex entry(const qc_hermitian *A, int32_t i, int32_t j) {
     return (qc_complex){0, 0};
 }
 
-/* The rows of an edge and of the other two edges of its second face. */
-static void find_paths(bench_matrix *M, const qc_mesh *mesh) {
+/* The rows of an edge and of the other two edges of its second face; its midpoint. */
+static void find_rows(bench_matrix *M, const qc_mesh *mesh) {
     const int32_t *unknown = M->stiffness->unknown;
     M->path = bench_alloc((size_t)M->A.n, sizeof *M->path);
+    M->position = NEW(double, 3 * (int64_t)M->A.n);
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         const int32_t h = mesh->edge_halfedge[2 * e + 1];
         if (unknown[e] < 0) continue;
         int32_t *row = M->path[unknown[e]];
+        for (int c = 0; c < 3; c++)
+            M->position[3 * unknown[e] + c] =
+                0.5 * (mesh->position[3 * mesh->edge_vertex[2 * e] + c] +
+                       mesh->position[3 * mesh->edge_vertex[2 * e + 1] + c]);
         row[0] = -1;
         if (h < 0) continue;
         const int32_t l = unknown[mesh->halfedge_edge[qc_next(h)]];
@@ -84,7 +89,7 @@ bench_matrix *bench_make_matrix(qc_ctx *ctx, const char *name, const qc_matching
     bench_check(ctx, qc_stiffness_edges(ctx, &cover, cotangent, &M->stiffness));
     free(cotangent);
     M->A = M->stiffness->A;
-    find_paths(M, mesh);
+    find_rows(M, mesh);
     M->flips = NEW(bench_flip, flips);
     random_state = 1;
     while (M->n_flips < flips) {
@@ -97,6 +102,7 @@ bench_matrix *bench_make_matrix(qc_ctx *ctx, const char *name, const qc_matching
 void bench_matrix_free(bench_matrix *M) {
     qc_stiffness_free(M->stiffness);
     free(M->path);
+    free(M->position);
     free(M->flips);
     free(M);
 }

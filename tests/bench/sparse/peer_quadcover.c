@@ -14,11 +14,14 @@ typedef struct state {
     qc_factor *F;
 } state;
 
-static qc_analyze_options ordering_options(int ordering, const int32_t *perm) {
-    static const int32_t name[] = {QC_ORDER_GIVEN, QC_ORDER_AMD, QC_ORDER_DISSECTION};
+static qc_analyze_options ordering_options(const bench_matrix *M, int ordering,
+                                           const int32_t *perm) {
+    static const int32_t name[] = {QC_ORDER_GIVEN, QC_ORDER_AMD, QC_ORDER_DISSECTION,
+                                   QC_ORDER_DISSECTION};
     qc_analyze_options options = QC_ANALYZE_OPTIONS_INIT;
     options.ordering = name[ordering];
     options.permutation = perm;
+    if (ordering == ORDER_PLACED) options.position = M->position;
     return options;
 }
 
@@ -28,7 +31,7 @@ static void *create(const bench_matrix *M, int ordering, const int32_t *perm, ui
     options.threads = threads;
     bench_check(NULL, qc_ctx_create(&options, &s->ctx));
     s->M = M;
-    s->options = ordering_options(ordering, perm);
+    s->options = ordering_options(M, ordering, perm);
     return s;
 }
 
@@ -108,7 +111,7 @@ const bench_peer peer_quadcover = {"QuadCover", create, analyze,    factor, refa
                                    energy,      stored, drop,       destroy};
 
 void order_quadcover(const bench_matrix *M, int ordering, int32_t *perm) {
-    const qc_analyze_options options = ordering_options(ordering, NULL);
+    const qc_analyze_options options = ordering_options(M, ordering, NULL);
     const qc__pattern pattern = {M->A.n, M->A.colptr, M->A.row};
     qc_ctx_options one = QC_CTX_OPTIONS_INIT;
     qc_ctx *ctx = NULL;

@@ -4,7 +4,7 @@
 /* The first column of that peer: with AMD, in the table of own orderings. */
 static void reach(const bench_lineup *L, bench_row *r, const bench_peer *p, double figure) {
     for (int c = 0; c < L->table->columns; c++)
-        if (L->runner[PEERS + c].peer == p) {
+        if (L->runner[L->peers + c].peer == p) {
             r->reach[c] = figure;
             return;
         }
@@ -17,13 +17,13 @@ static double seconds(const bench_runner *r, int op, bool wall) {
 }
 
 static bench_row *time_row(bench_lineup *L, const char *name, int who, unsigned ops) {
-    const bool wall = who == OURS_2;
+    const bool wall = who != OURS;
     bench_row *r = bench_add_row(L->table, name, "s", 0);
     for (int op = 0; op < OP_COUNT; op++) {
         if (!(ops >> op & 1)) continue;
         r->ours += seconds(&L->runner[who], op, wall);
         for (int c = 0; c < L->table->columns; c++)
-            r->peer[c] += seconds(&L->runner[PEERS + c], op, wall);
+            r->peer[c] += seconds(&L->runner[L->peers + c], op, wall);
     }
     return r;
 }
@@ -53,7 +53,7 @@ void bench_factor_rows(bench_lineup *L) {
     rate(time_row(L, "factorise again, 2 threads", OURS_2, 1u << OP_REFACTOR), flops, "flop/s",
          2 * fma);
     bench_row *s = bench_add_row(L->table, "entries stored", "", L->runner[OURS].stored);
-    for (int c = 0; c < L->table->columns; c++) s->peer[c] = L->runner[PEERS + c].stored;
+    for (int c = 0; c < L->table->columns; c++) s->peer[c] = L->runner[L->peers + c].stored;
 }
 
 void bench_solve_rows(bench_lineup *L) {
@@ -80,7 +80,7 @@ static void carry_rows(bench_lineup *L) {
     bench_row *r = bench_add_row(L->table, "flip and its forward solution", "s", total);
     bench_row *f = bench_add_row(L->table, "of this, the forward solution", "s", total - flip);
     for (int c = 0; c < L->table->columns; c++) {
-        const bench_runner *peer = &L->runner[PEERS + c];
+        const bench_runner *peer = &L->runner[L->peers + c];
         f->peer[c] = seconds(peer, OP_FORWARD, false);
         if (seconds(peer, OP_FLIP, false) > 0)
             r->peer[c] = seconds(peer, OP_FLIP, false) + f->peer[c];
@@ -99,7 +99,7 @@ void bench_update_rows(bench_lineup *L) {
     if (undo > 0) {
         r = bench_add_row(L->table, "flip taken back", "s", undo);
         for (int c = 0; c < L->table->columns; c++)
-            r->peer[c] = seconds(&L->runner[PEERS + c], OP_FLIP, false);
+            r->peer[c] = seconds(&L->runner[L->peers + c], OP_FLIP, false);
         r->other = "own update";
         r->other_value = flip;
         r->other_reach = 3;
@@ -111,7 +111,7 @@ void bench_memory_row(bench_lineup *L) {
     bench_row *r = bench_add_row(L->table, "peak memory of analysis and factor", "B",
                                  bench_peak_memory(L->M, &L->runner[OURS]));
     for (int c = 0; c < L->table->columns; c++)
-        r->peer[c] = bench_peak_memory(L->M, &L->runner[PEERS + c]);
+        r->peer[c] = bench_peak_memory(L->M, &L->runner[L->peers + c]);
     reach(L, r, &peer_cholmod, 1 / 0.7);
 }
 
@@ -121,16 +121,29 @@ void bench_analysis_rows(bench_lineup *L) {
     time_row(L, "analyse, 1 thread", OURS, 1u << OP_ANALYZE);
     time_row(L, "analyse and factorise, 1 thread", OURS, both);
     bench_row *r = time_row(L, "analyse and factorise, 2 threads", OURS_2, both);
-    if (80000 < faces && faces < 100000) reach(L, r, &peer_cholmod, 5);
+    bench_row *quick = time_row(L, "the same, ours with AMD", OURS_AMD_2, both);
+    if (80000 < faces && faces < 100000) {
+        reach(L, r, &peer_cholmod, 5);
+        reach(L, quick, &peer_cholmod, 5);
+    }
 }
 
-void bench_order_rows(bench_table *t, const char *const name[4], const double ours[4],
-                      const double metis[4], bool dissection) {
+void bench_order_rows(bench_table *t, int ordering, double seconds, const bench_quality *q,
+                      double metis_seconds, const bench_quality *metis) {
+    static const char *const name[ORDER_KINDS][4] = {
+        [ORDER_AMD] = {"AMD: time", "AMD: entries of L", "AMD: operations",
+                       "AMD: entries touched by a flip"},
+        [ORDER_DISSECTION] = {"dissection: time", "dissection: entries of L",
+                              "dissection: operations", "dissection: entries touched by a flip"},
+        [ORDER_PLACED] = {"with positions: time", "with positions: entries of L",
+                          "with positions: operations", "with positions: entries touched"}};
     static const char *const unit[4] = {"s", "", "flop", ""};
+    const double ours[4] = {seconds, q->nnz, q->flops, q->touched};
+    const double theirs[4] = {metis_seconds, metis->nnz, metis->flops, metis->touched};
+    const double figure[4] = {2, 0, 0, 1 / 0.9};
     for (int i = 0; i < 4; i++) {
-        bench_row *r = bench_add_row(t, name[i], unit[i], ours[i]);
-        r->peer[0] = metis[i];
-        if (dissection && i == 0) r->reach[0] = 2;
-        if (dissection && i == 3) r->reach[0] = 1 / 0.9;
+        bench_row *row = bench_add_row(t, name[ordering][i], unit[i], ours[i]);
+        row->peer[0] = theirs[i];
+        if (ordering != ORDER_AMD) row->reach[0] = figure[i];
     }
 }
