@@ -36,13 +36,16 @@ static void restore_solution(qc_factor *F, int32_t s, const double *old) {
     forward->energy[s] = old[nc * (w + m)];
 }
 
-static void restore_panel(qc_factor *F, int32_t s, int64_t k0, const double *old,
-                          const double *end) {
+static void restore_panel(qc_factor *F, const qc__record *R) {
     const qc_symbolic *S = F->S;
+    const qc__journal *J = &F->modify->journal;
+    const int32_t s = R->index;
+    const int64_t k0 = R->k0;
     const int64_t first = S->super[s], w = S->super[s + 1] - first;
-    memcpy(F->D + first + k0, old, (size_t)(w - k0) * sizeof *old);
+    memcpy(F->D + first + k0, J->data + R->begin, (size_t)(w - k0) * sizeof *J->data);
     F->kernels->restore_front(S->rowptr[s + 1] - S->rowptr[s], w, k0,
-                              F->values + F->components * S->panel[s], old + w - k0, end);
+                              F->values + F->components * S->panel[s],
+                              J->data + qc__journal_panel(R->begin, w - k0), J->data + J->used);
 }
 
 void qc__journal_roll_back(qc_factor *F, int64_t records) {
@@ -54,7 +57,7 @@ void qc__journal_roll_back(qc_factor *F, int64_t records) {
         const double *old = J->data + R->begin;
         switch (R->kind) {
         case QC__PANEL:
-            restore_panel(F, R->index, R->k0, old, J->data + J->used);
+            restore_panel(F, R);
             break;
         case QC__SOLUTION:
             restore_solution(F, R->index, old);

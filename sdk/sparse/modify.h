@@ -83,6 +83,11 @@ qc_status qc__journal_reserve(qc_ctx *ctx, qc_factor *F, int64_t doubles, int64_
 double *qc__journal_record(qc_factor *F, qc__record_kind kind, int32_t index, int32_t k0);
 void qc__journal_roll_back(qc_factor *F, int64_t records);
 
+/* Where the entries of a panel record begin, after its pivots: whole cache lines. */
+static inline int64_t qc__journal_panel(int64_t begin, int64_t pivots) {
+    return (begin + pivots + 7) / 8 * 8;
+}
+
 /* forward.c: b + contributions of the children of s into f (r entries); returns their energy. */
 double qc__forward_assemble(const qc_factor *F, int32_t s, double *f);
 /* z, contribution and energy of s after the kernel. */

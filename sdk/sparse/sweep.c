@@ -113,7 +113,7 @@ static qc_status reserve_journal(qc_ctx *ctx, const sweep *W) {
     for (int32_t i = W->begin; i < S->nsuper; i++) {
         const int32_t s = W->M->path[i];
         const int64_t w = S->super[s + 1] - S->super[s], r = S->rowptr[s + 1] - S->rowptr[s];
-        if (C->vectors > 0) doubles += w + qc__update_journal((int32_t)W->nc, r, w);
+        if (C->vectors > 0) doubles += w + 7 + qc__update_journal((int32_t)W->nc, r, w);
         if (forward) doubles += W->nc * r + 1;
         records += 2;
     }
@@ -224,7 +224,7 @@ static int32_t sweep_front(sweep *W, int32_t s) {
     if (k0 < w) {
         qc__journal_record(F, QC__PANEL, s, (int32_t)k0);
         memcpy(old, F->D + first + k0, (size_t)(w - k0) * sizeof *old);
-        old += w - k0;
+        old = J->data + qc__journal_panel(J->used, w - k0);
     }
     qc__update_front front = {r,
                               w,

@@ -8,7 +8,7 @@
 #include "sdk/sparse/kernels/kernels.h"
 #include "sdk/sparse/kernels/vector.h"
 
-enum { GROUPS = 4, BLOCK = GROUPS * LANES / NC, TILE = LANES == 8 ? 4 : 2, STEP = 6 };
+enum { GROUPS = 4, BLOCK = GROUPS * LANES / NC, TILE = LANES == 8 ? 4 : 2, STEP = 6, AHEAD = 512 };
 
 /* A number as factor of vectors: re, and (-im, im) alternating. In memory: re, -im, im. */
 typedef struct multiplier {
@@ -78,6 +78,8 @@ QC__INLINE void update_tile(const tile *R, const int T, const bool part, const i
         }
         for (int t = 0; t < T; t++) {
             vec l = get(x, t, T, part, last);
+            QC__FETCH(x + (TILE + t) * LANES);
+            if (save) QC__FETCH_TO_WRITE(journal + AHEAD + t * LANES);
             if (save) v_store(journal + t * LANES, l);
             for (int q = 0; q < V; q++) {
                 v[q][t] = subtract(v[q][t], p[q], l);
@@ -113,7 +115,11 @@ QC__INLINE void restore_tile(const tile *R, const double *journal, const int T, 
     const int64_t last = R->doubles - (T - 1) * LANES, ld = R->ld;
     double *x = R->x;
     for (int64_t k = R->columns; k > 0; k--) {
-        for (int t = 0; t < T; t++) put(x, v_load(journal + t * LANES), t, T, part, last);
+        for (int t = 0; t < T; t++) {
+            QC__FETCH_TO_WRITE(x + (TILE + t) * LANES);
+            QC__FETCH(journal + AHEAD + t * LANES);
+            put(x, v_load(journal + t * LANES), t, T, part, last);
+        }
         x += ld;
         journal += T * LANES;
     }
@@ -174,19 +180,18 @@ static inline int64_t tile_journal(int64_t doubles, int64_t columns) {
     return (doubles + LANES - 1) / LANES * LANES * columns;
 }
 
-/* (S.8) Pivot d under the vector entry p = (re, im): m gets p, b. A pivot which stays as it is
- * cannot fail. rho = 1 / alpha. */
+/* (S.8) Pivot d under the vector entry p = (re, im): m gets p, b; rho = 1 / alpha. A pivot which
+ * stays as it is cannot fail. */
 QC__INLINE bool change_pivot(double re, double im, double floor, double *d, double *alpha,
                              double *rho, double *m) {
-    const double inverse = 1 / *d, changed = *alpha + (re * re + im * im) * inverse;
-    const bool same = changed == *alpha;
-    *d = same ? *d : *d * (changed * *rho);
+    const double old = *alpha, inverse = 1 / *d, changed = old + (re * re + im * im) * inverse;
+    const double next = 1 / changed, scale = inverse * next;
+    *d = v_if_equal(changed, old, *d, *d * (changed * *rho));
     *alpha = changed;
-    *rho = 1 / changed;
-    const double scale = inverse * *rho;
+    *rho = next;
     set(m, re, im);
     set(m + 3, scale * re, -scale * im);
-    return same || (*d > floor && *d <= DBL_MAX);
+    return (changed == old) | ((*d > floor) & (*d <= DBL_MAX));
 }
 
 /* y - c x and y + c x for c = re + i im, the two spread */
@@ -199,54 +204,44 @@ QC__INLINE vec add_product(vec y, vec re, vec im, vec x) {
     return NC == 1 ? y : v_fma(im, v_times_i(x), y);
 }
 
-/* The diagonal block of the columns [begin, end), whose rows are G vectors, under the V vectors
- * from q on, which stay in registers. Old entries go to `journal` unless that is NULL. Returns -1
- * or the column whose pivot fails: then all columns before it have changed. */
+/* The diagonal block of the columns [begin, end), whose rows are G vectors, under the vector q,
+ * which stays in registers; m: its multipliers, `step` apart. One vector at a time keeps the chain
+ * of operations short. Old entries go to `journal` unless that is NULL. Returns -1 or the column
+ * whose pivot fails: then all columns before it have changed. */
 QC__INLINE int32_t update_block(const qc__update_front *f, int64_t begin, int64_t end, int32_t q,
-                                double *m, double *journal, const int V, const int G) {
-    const int64_t last = NC * (end - begin) - (G - 1) * LANES;
-    double *x = f->panel + NC * (begin * f->r + begin);
-    double alpha[2], rho[2];
-    vec v[2][GROUPS];
-    for (int j = 0; j < V; j++) {
-        alpha[j] = *f->alpha[q + j];
-        rho[j] = 1 / alpha[j];
-        for (int g = 0; g < G; g++) v[j][g] = get(f->vector[q + j] + NC * begin, g, G, true, last);
-    }
+                                double *m, int64_t step, double *journal, const int G) {
+    const int64_t last = NC * (end - begin) - (G - 1) * LANES, ld = NC * f->r;
+    const double *diagonal = f->diagonal, relative = f->floor;
+    double *x = f->panel + NC * (begin * f->r + begin), *D = f->D;
+    double alpha = *f->alpha[q], rho = 1 / alpha;
+    vec v[GROUPS];
+    for (int g = 0; g < G; g++) v[g] = get(f->vector[q] + NC * begin, g, G, true, last);
     int64_t column = begin;
     for (int t = 0; t < G; t++) {
         const int64_t lanes = t == G - 1 ? last : LANES;
         for (int64_t lane = 0; lane < lanes; lane += NC, column++) {
-            const double floor = f->floor * f->diagonal[column];
-            double d = f->D[column];
-            bool good = true;
-            vec p[2][2], b[2][2];
-            for (int j = 0; j < V; j++) {
-                p[j][0] = v_spread(v[j][t], (int)lane);
-                p[j][1] = NC == 2 ? v_spread(v[j][t], (int)lane + 1) : v_zero();
-                good &= change_pivot(v_first(p[j][0]), v_first(p[j][1]), floor, &d, &alpha[j],
-                                     &rho[j], m + STEP * j);
-                b[j][0] = v_set(m[STEP * j + 3]);
-                b[j][1] = v_set(m[STEP * j + 5]);
-            }
-            if (!good) return (int32_t)column;
-            f->D[column] = d;
+            const vec pr = v_spread(v[t], (int)lane);
+            const vec pi = NC == 2 ? v_spread(v[t], (int)lane + 1) : v_zero();
+            double d = D[column];
+            if (!change_pivot(v_first(pr), v_first(pi), relative * diagonal[column], &d, &alpha,
+                              &rho, m))
+                return (int32_t)column;
+            D[column] = d;
+            const vec br = v_set(m[3]), bi = v_set(m[5]);
             for (int g = t; g < G; g++) {
                 const vec old = get(x, g, G, true, last);
                 if (journal) v_store(journal + (g - t) * LANES, old);
-                vec l = g == t ? v_join(v_zero(), old, lane + NC) : old;
-                for (int j = 0; j < V; j++) {
-                    v[j][g] = subtract_product(v[j][g], p[j][0], p[j][1], l);
-                    l = add_product(l, b[j][0], b[j][1], v[j][g]);
-                }
-                put(x, g == t ? v_join(old, l, lane + NC) : l, g, G, true, last);
+                const vec l = g == t ? v_join(v_zero(), old, lane + NC) : old;
+                v[g] = subtract_product(v[g], pr, pi, l);
+                const vec y = add_product(l, br, bi, v[g]);
+                put(x, g == t ? v_join(old, y, lane + NC) : y, g, G, true, last);
             }
             if (journal) journal += (G - t) * LANES;
-            x += NC * f->r;
-            m += STEP * V;
+            x += ld;
+            m += step;
         }
     }
-    for (int j = 0; j < V; j++) *f->alpha[q + j] = alpha[j];
+    *f->alpha[q] = alpha;
     return -1;
 }
 
@@ -312,30 +307,17 @@ static inline int64_t block_journal(int64_t columns) {
     return sum;
 }
 
-static int32_t update_pair(const qc__update_front *f, int64_t k, int64_t end, int32_t q, double *m,
-                           double *journal) {
+static int32_t update_any(const qc__update_front *f, int64_t k, int64_t end, int32_t q, double *m,
+                          int64_t step, double *journal) {
     switch ((int)((NC * (end - k) + LANES - 1) / LANES)) {
     case 1:
-        return update_block(f, k, end, q, m, journal, 2, 1);
+        return update_block(f, k, end, q, m, step, journal, 1);
     case 2:
-        return update_block(f, k, end, q, m, journal, 2, 2);
+        return update_block(f, k, end, q, m, step, journal, 2);
     case 3:
-        return update_block(f, k, end, q, m, journal, 2, 3);
+        return update_block(f, k, end, q, m, step, journal, 3);
     default:
-        return update_block(f, k, end, q, m, journal, 2, 4);
-    }
-}
-static int32_t update_one(const qc__update_front *f, int64_t k, int64_t end, int32_t q, double *m,
-                          double *journal) {
-    switch ((int)((NC * (end - k) + LANES - 1) / LANES)) {
-    case 1:
-        return update_block(f, k, end, q, m, journal, 1, 1);
-    case 2:
-        return update_block(f, k, end, q, m, journal, 1, 2);
-    case 3:
-        return update_block(f, k, end, q, m, journal, 1, 3);
-    default:
-        return update_block(f, k, end, q, m, journal, 1, 4);
+        return update_block(f, k, end, q, m, step, journal, 4);
     }
 }
 static void solve_any(const qc__update_front *f, int64_t k, int64_t end, double *m) {
@@ -392,10 +374,10 @@ int32_t KERNEL(qc__update_front)(qc__update_front *f) {
         const int32_t vectors = k < f->k0 ? 0 : f->vectors;
         double *old = f->journal;
         if (vectors > 0) f->journal += block_journal(end - k);
-        for (int32_t q = 0; q < vectors; q += 2) {
-            double *m = f->multipliers + STEP * BLOCK * q;
-            const int32_t bad = q + 1 < vectors ? update_pair(f, k, end, q, m, q ? NULL : old)
-                                                : update_one(f, k, end, q, m, q ? NULL : old);
+        for (int32_t q = 0; q < vectors; q++) {
+            const int32_t pair = q / 2 * 2, V = pair + 1 < vectors ? 2 : 1;
+            double *m = f->multipliers + STEP * (BLOCK * pair + q % 2);
+            const int32_t bad = update_any(f, k, end, q, m, STEP * V, q ? NULL : old);
             if (bad >= 0 && q == 0) save_rest(f, k, bad, end, old);
             if (bad >= 0) return bad;
         }

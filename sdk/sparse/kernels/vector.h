@@ -9,10 +9,14 @@
 
 /* Small loops with constant bounds must vanish: what they run over has to stay in registers. */
 #if defined(__GNUC__)
-#define QC__INLINE static inline __attribute__((always_inline))
-#define QC__UNROLL _Pragma("GCC unroll 16")
+#define QC__INLINE            static inline __attribute__((always_inline))
+#define QC__UNROLL            _Pragma("GCC unroll 16")
+#define QC__FETCH(p)          __builtin_prefetch(p) /* may point anywhere */
+#define QC__FETCH_TO_WRITE(p) __builtin_prefetch((p), 1)
 #else
-#define QC__INLINE static inline
+#define QC__FETCH(p)          ((void)(p))
+#define QC__FETCH_TO_WRITE(p) ((void)(p))
+#define QC__INLINE            static inline
 #define QC__UNROLL
 #endif
 
@@ -76,6 +80,10 @@ static inline vec v_times_i(vec x) {
 }
 static inline double v_first(vec x) {
     return _mm512_cvtsd_f64(x);
+}
+static inline double v_if_equal(double a, double b, double yes, double no) { /* without a jump */
+    return _mm_cvtsd_f64(
+        _mm_blendv_pd(_mm_set_sd(no), _mm_set_sd(yes), _mm_cmpeq_sd(_mm_set_sd(a), _mm_set_sd(b))));
 }
 static inline double v_sum(vec x) {
     return _mm512_reduce_add_pd(x);
@@ -187,6 +195,10 @@ static inline vec v_times_i(vec x) {
 static inline double v_first(vec x) {
     return _mm256_cvtsd_f64(x);
 }
+static inline double v_if_equal(double a, double b, double yes, double no) {
+    return _mm_cvtsd_f64(
+        _mm_blendv_pd(_mm_set_sd(no), _mm_set_sd(yes), _mm_cmpeq_sd(_mm_set_sd(a), _mm_set_sd(b))));
+}
 static inline double v_sum(vec x) {
     const __m128d half = _mm_add_pd(_mm256_castpd256_pd128(x), _mm256_extractf128_pd(x, 1));
     return _mm_cvtsd_f64(_mm_add_sd(half, _mm_unpackhi_pd(half, half)));
@@ -277,6 +289,9 @@ static inline vec v_times_i(vec x) {
 }
 static inline double v_first(vec x) {
     return x.a;
+}
+static inline double v_if_equal(double a, double b, double yes, double no) {
+    return a == b ? yes : no;
 }
 static inline double v_sum(vec x) {
     return x.a + x.b;
