@@ -17,8 +17,8 @@ typedef struct sweep {
                                               supernode, first non-zero local row, list */
     int32_t *list;                         /* active vectors of the present front */
     double **v, **spare;                   /* the vectors on the present front; the other half */
-    double **vector, **alpha_of;           /* of the active ones, for the kernel */
-    double *alpha, *multipliers, *solution;
+    double **vector, **coefficient;        /* of the active ones, for the kernel */
+    double *a, *multipliers, *solution;
     double negligible;
 } sweep;
 
@@ -76,14 +76,14 @@ static qc_status allocate(qc_ctx *ctx, sweep *W) {
     W->v = M->pointer;
     W->spare = W->v + k;
     W->vector = W->spare + k;
-    W->alpha_of = W->vector + k;
+    W->coefficient = W->vector + k;
     W->solution = M->work;
     for (int64_t i = 0; i < k; i++) {
         W->v[i] = M->work + (2 * i + 1) * half;
         W->spare[i] = W->v[i] + half;
     }
     W->multipliers = M->work + (2 * k + 1) * half;
-    W->alpha = W->multipliers + k * QC__UPDATE_MULTIPLIERS;
+    W->a = W->multipliers + k * QC__UPDATE_MULTIPLIERS;
     return QC_OK;
 }
 
@@ -135,7 +135,7 @@ static void load_vector(sweep *W, int32_t i) {
     const int32_t s = W->start[i], q = W->order[i];
     const int64_t nc = W->nc, r = S->rowptr[s + 1] - S->rowptr[s];
     memset(W->v[i], 0, (size_t)(nc * r) * sizeof(double));
-    W->alpha[i] = C->sigma[q];
+    W->a[i] = C->sigma[q];
     W->first[i] = (int32_t)r;
     for (int32_t p = C->start[q]; p < C->start[q + 1]; p++) {
         const int64_t local = find_row(S, s, S->inverse[C->row[p]]);
@@ -199,7 +199,7 @@ static int64_t gather(sweep *W, int32_t s, int64_t w) {
     for (int32_t i = W->M->head[s]; i != -1; i = W->next[i]) {
         W->list[W->active] = i;
         W->vector[W->active] = W->v[i];
-        W->alpha_of[W->active++] = &W->alpha[i];
+        W->coefficient[W->active++] = &W->a[i];
         if (W->first[i] < k0) k0 = W->first[i];
     }
     return k0;
@@ -235,7 +235,7 @@ static int32_t sweep_front(sweep *W, int32_t s) {
                               qc__pivot_floor(S->n, 1),
                               W->active,
                               W->vector,
-                              W->alpha_of,
+                              W->coefficient,
                               W->negligible,
                               forward ? W->solution : NULL,
                               old,

@@ -106,7 +106,8 @@ TILE(1, 3)
 TILE(1, 4)
 TILE(2, 1)
 TILE(2, 2)
-TILE(2, 3) TILE(2, 4) TILE(3, 1) TILE(3, 2) TILE(3, 3) TILE(3, 4)
+TILE(2, 3)
+TILE(2, 4) TILE(3, 1) TILE(3, 2) TILE(3, 3) TILE(3, 4)
 
     typedef void tile_function(const tile_job *);
 static tile_function *const products[3][4] = {{product_1_1, product_1_2, product_1_3, product_1_4},

@@ -16,7 +16,7 @@ typedef struct qc__update_front {
     double floor;           /* pivots above floor * diagonal are accepted */
     int32_t vectors;
     double *const *vector; /* r each: leave as the vectors on the rows below the diagonal block */
-    double *const *alpha;  /* one each, sigma at first, changes */
+    double *const *a;      /* one coefficient each, sigma at first, changes */
     double negligible;     /* entries of vectors up to this become zero */
     double *solution;      /* r or NULL: right-hand side -> L11^{-1} f1 and f2 - L21 L11^{-1} f1 */
     double *journal;       /* advances past the old entries written there */

@@ -180,18 +180,15 @@ static inline int64_t tile_journal(int64_t doubles, int64_t columns) {
     return (doubles + LANES - 1) / LANES * LANES * columns;
 }
 
-/* (S.8) Pivot d under the vector entry p = (re, im): m gets p, b; rho = 1 / alpha. A pivot which
- * stays as it is cannot fail. */
-QC__INLINE bool change_pivot(double re, double im, double floor, double *d, double *alpha,
-                             double *rho, double *m) {
-    const double old = *alpha, inverse = 1 / *d, changed = old + (re * re + im * im) * inverse;
-    const double next = 1 / changed, scale = inverse * next;
-    *d = v_if_equal(changed, old, *d, *d * (changed * *rho));
-    *alpha = changed;
-    *rho = next;
+/* Pivot d under the vector entry p = (re, im), (S.7): m gets p, b. A pivot which stays as it is
+ * cannot fail. */
+QC__INLINE bool change_pivot(double re, double im, double floor, double *d, double *a, double *m) {
+    const double old = *d, changed = old + *a * (re * re + im * im), scale = *a / changed;
     set(m, re, im);
     set(m + 3, scale * re, -scale * im);
-    return (changed == old) | ((*d > floor) & (*d <= DBL_MAX));
+    *a = v_if_equal(changed, old, *a, *a * (old / changed));
+    *d = changed;
+    return (changed == old) | ((changed > floor) & (changed <= DBL_MAX));
 }
 
 /* y - c x and y + c x for c = re + i im, the two spread */
@@ -213,7 +210,7 @@ QC__INLINE int32_t update_block(const qc__update_front *f, int64_t begin, int64_
     const int64_t last = NC * (end - begin) - (G - 1) * LANES, ld = NC * f->r;
     const double *diagonal = f->diagonal, relative = f->floor;
     double *x = f->panel + NC * (begin * f->r + begin), *D = f->D;
-    double alpha = *f->alpha[q], rho = 1 / alpha;
+    double a = *f->a[q];
     vec v[GROUPS];
     for (int g = 0; g < G; g++) v[g] = get(f->vector[q] + NC * begin, g, G, true, last);
     int64_t column = begin;
@@ -223,8 +220,7 @@ QC__INLINE int32_t update_block(const qc__update_front *f, int64_t begin, int64_
             const vec pr = v_spread(v[t], (int)lane);
             const vec pi = NC == 2 ? v_spread(v[t], (int)lane + 1) : v_zero();
             double d = D[column];
-            if (!change_pivot(v_first(pr), v_first(pi), relative * diagonal[column], &d, &alpha,
-                              &rho, m))
+            if (!change_pivot(v_first(pr), v_first(pi), relative * diagonal[column], &d, &a, m))
                 return (int32_t)column;
             D[column] = d;
             const vec br = v_set(m[3]), bi = v_set(m[5]);
@@ -241,7 +237,7 @@ QC__INLINE int32_t update_block(const qc__update_front *f, int64_t begin, int64_
             m += step;
         }
     }
-    *f->alpha[q] = alpha;
+    *f->a[q] = a;
     return -1;
 }
 
