@@ -148,7 +148,7 @@ typedef struct bench_limits {
 extern const int32_t bench_zgemm_size[3];
 bench_limits bench_measure_limits(void);
 
-/* --- report.c, report_json.c ------------------------------------------------------------------ */
+/* --- report.c, report_summary.c, report_json.c ------------------------------------------------ */
 
 enum { MOST_COLUMNS = 6, MOST_ROWS = 32 };
 
@@ -181,6 +181,8 @@ typedef struct bench_comparison {
 enum { FORMAT_TEXT, FORMAT_MARKDOWN };
 void bench_print_limits(const bench_limits *l, int format);
 void bench_print_comparison(const bench_comparison *c, int format);
+/* The ratios to be reached over all meshes. */
+void bench_print_summary(int32_t n, const bench_comparison *c, int format);
 void bench_write_json(const char *path, const bench_limits *l, int32_t n,
                       const bench_comparison *c);
 

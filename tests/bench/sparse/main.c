@@ -106,11 +106,15 @@ int main(int argc, char **argv) {
     qc_ctx *ctx = NULL;
     bench_check(NULL, qc_ctx_create(NULL, &ctx));
     const bench_limits l = bench_measure_limits();
-    bench_print_limits(&l, format);
     bench_comparison *results = NEW(bench_comparison, count);
-    for (int32_t i = 0; i < count; i++)
-        if (compare_mesh(ctx, &a, i, &l, &results[done]))
-            bench_print_comparison(&results[done++], format);
+    bench_print_limits(&l, format);
+    for (int32_t i = 0; i < count; i++) {
+        if (!compare_mesh(ctx, &a, i, &l, &results[done])) continue;
+        if (!a.markdown) bench_print_comparison(&results[done], format);
+        done++;
+    }
+    bench_print_summary(done, results, format);
+    for (int32_t i = 0; a.markdown && i < done; i++) bench_print_comparison(&results[i], format);
     if (a.json) bench_write_json(a.json, &l, done, results);
     free(results);
     qc_ctx_free(ctx);
