@@ -6,7 +6,9 @@ typedef struct params {
     int32_t lattice, start;
     int64_t radius;
     double tolerance;
+    const char *solver;
 } params;
+static const char *const solvers[] = {QC_SOLVER_ID, NULL};
 
 static const char *const lattices[] = {"quads", "integer", "even", NULL};
 static const char *const starts[] = {"direct", "greedy", NULL};
@@ -28,6 +30,8 @@ static const qc_param table[] = {
                  "then change up to this many integers at a time while the energy falls"),
     QC_PARAM_REAL(params, tolerance, 0.02, 0.001, 1, "",
                   "accepted relative deviation from the target number of quads"),
+    QC_PARAM_INTERFACE(params, solver, solvers,
+                       "factorises L; builtin unless a plugin or the program offers another"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
@@ -37,6 +41,8 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.start = p->start;
     options.radius = (int32_t)p->radius;
     options.tolerance = p->tolerance;
+    options.solver = (const qc_solver *)r->find(r, QC_SOLVER_ID, p->solver);
+    if (!options.solver) return QC_ERR_NOT_FOUND;
     qc_corner_map *map = NULL;
     const qc_status status = qc_map_round(r->ctx, r->input(r, "map"), &options, &map);
     return status == QC_OK ? r->output(r, "map", map) : status;

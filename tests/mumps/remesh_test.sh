@@ -11,9 +11,10 @@ run 0 shape genus --genus 3 --resolution 2000 -o in.obj
 run 0 $remesh -o builtin.obj --stats builtin.json --set hodge.solver=builtin
 run 0 $remesh -o default.obj
 same builtin.obj default.obj "solver builtin"
-run 0 $remesh -o alone.obj --stats alone.json --plugin "$plugin" --set hodge.solver=mumps
+run 0 $remesh -o alone.obj --stats alone.json --plugin "$plugin" --set hodge.solver=mumps \
+    --set round.solver=mumps
 "$@" -n 1 "$quadcover" $remesh -o two.obj --stats two.json --plugin "$plugin" \
-    --set hodge.solver=mumps : -n 1 "$worker" >out 2>err || fail "mpirun: $(cat err)"
+    --set hodge.solver=mumps --set round.solver=mumps : -n 1 "$worker" >out 2>err || fail "mpirun: $(cat err)"
 [ -s out ] && fail "something was printed: $(cat out)"
 [ "$(value builtin.json E_D)" ] || fail "no E_D in the statistics"
 for kind in alone two; do

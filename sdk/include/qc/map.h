@@ -90,13 +90,14 @@ typedef struct qc_round_options {
     int32_t lattice; /* QC_LATTICE_... */
     int32_t start;  /* QC_ROUND_DIRECT or QC_ROUND_GREEDY                                         */
     int32_t radius; /* 0..3, see qc_lattice_options                                               */
-    double tolerance; /* of the number of quads when the sizing asks for one; 0 = 0.02 */
+    double tolerance;        /* of the number of quads when the sizing asks for one; 0 = 0.02 */
+    const qc_solver *solver; /* factorises L; borrowed for the call, NULL = builtin    */
 } qc_round_options;
 #define QC_ROUND_OPTIONS_INIT                                                                      \
-    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02 }
+    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02, NULL }
 /* Rounds the periods to a lattice by the period matrix (Sigma trick, 6.3.2) and adds the harmonic
  * map with the missing periods. When the sizing asks for a number of quads the map is rescaled and
- * rounded again until its area meets it. Errors: NOMEM, CANCELLED, FAILED. */
+ * rounded again until its area meets it. Errors: NOMEM, CANCELLED, FAILED, those of the solver. */
 QC_API qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
                               const qc_round_options *options, qc_corner_map **out);
 

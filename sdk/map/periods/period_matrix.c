@@ -7,8 +7,7 @@ enum { BLOCK = 16 }; /* right-hand sides solved together */
 void qc__periods_free(qc__periods *p) {
     if (!p) return;
     qc_stiffness_free(p->stiffness);
-    qc_factor_free(p->factor);
-    qc_symbolic_free(p->symbolic);
+    if (p->factor) p->solver->destroy(p->factor);
     qc__free(p->gauge);
     qc__free(p->seam_face);
     qc__free(p->column_start);
@@ -45,8 +44,10 @@ static qc_status factorise(qc_ctx *ctx, const qc_cover *cover, qc__periods *p) {
     qc_status status = qc_stiffness_vertices(ctx, cover, p->cotangent, pinned, &p->stiffness);
     qc__free(pinned);
     if (status != QC_OK || p->stiffness->A.n == 0) return status;
-    status = qc_analyze(ctx, &p->stiffness->A, NULL, &p->symbolic);
-    if (status == QC_OK) status = qc_factorize(ctx, p->symbolic, &p->stiffness->A, &p->factor);
+    status = qc_solver_check(ctx, p->solver);
+    if (status == QC_OK)
+        status = p->solver->analyze(p->solver, ctx, &p->stiffness->A, NULL, &p->factor);
+    if (status == QC_OK) status = p->solver->factorize(ctx, p->factor, &p->stiffness->A);
     return status;
 }
 
@@ -93,11 +94,13 @@ static qc_status transpose_rows(qc_ctx *ctx, qc__periods *p) {
 }
 
 qc_status qc__periods_create(qc_ctx *ctx, const qc_cover *cover, const qc__seams *seams,
-                             const double *cotangent, const int8_t *face_turn, qc__periods **out) {
+                             const double *cotangent, const int8_t *face_turn,
+                             const qc_solver *solver, qc__periods **out) {
     qc__periods *p = QC__ZERO(ctx, qc__periods, 1);
     if (!p) return QC_ERR_NOMEM;
     p->seams = seams;
     p->cotangent = cotangent;
+    p->solver = solver ? solver : &qc_solver_builtin;
     p->gauge = QC__ZERO(ctx, int8_t, cover->mesh->n_vertices);
     qc_status status = p->gauge ? find_gauge(ctx, cover, face_turn, seams, p->gauge) : QC_ERR_NOMEM;
     if (status == QC_OK) status = find_seam_faces(ctx, p);
@@ -237,7 +240,7 @@ qc_status qc__period_matrix(qc_ctx *ctx, const qc__periods *p, double *P) {
             load_column(p, (int32_t)j, &scratch);
             assemble_rhs(p, scratch.wedge, F + (j - first) * rows);
         }
-        if (p->factor) status = qc_solve(ctx, p->factor, (int32_t)(last - first), F);
+        if (p->factor) status = p->solver->solve(ctx, p->factor, (int32_t)(last - first), F);
         for (int64_t j = first; j < last && status == QC_OK; j++) {
             load_column(p, (int32_t)j, &scratch);
             project(p, F + (j - first) * rows, &scratch, residual, dual);
@@ -267,7 +270,7 @@ qc_status qc__periods_add_map(qc_ctx *ctx, const qc__periods *p, const double _C
                 symbol[j] += s->row_value[i] * d[s->row_free[i]];
         wedge_offsets(s, symbol, wedge);
         assemble_rhs(p, wedge, F);
-        if (p->factor) status = qc_solve(ctx, p->factor, 1, F);
+        if (p->factor) status = p->solver->solve(ctx, p->factor, 1, F);
     }
     if (status == QC_OK)
         for (int64_t c = 0; c < 3 * (int64_t)s->mesh->n_faces; c++) {

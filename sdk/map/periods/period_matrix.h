@@ -13,8 +13,8 @@ typedef struct qc__periods {
     const qc__seams *seams;
     const double *cotangent; /* 3 n_faces, borrowed */
     qc_stiffness *stiffness;
-    qc_symbolic *symbolic;
-    qc_factor *factor; /* NULL when there is no unknown */
+    const qc_solver *solver; /* borrowed */
+    qc_solver_state *factor; /* NULL when there is no unknown */
     int8_t *gauge; /* n_vertices: F here = i^gauge F of qc_stiffness_vertices                    */
     int32_t n_seam_faces;
     int32_t *seam_face; /* faces with a corner in a wedge that has terms */
@@ -24,9 +24,10 @@ typedef struct qc__periods {
     double _Complex *column_value;
 } qc__periods;
 
-/* face_turn: the combing the seams were made with. */
+/* face_turn: the combing the seams were made with. solver NULL = builtin. */
 qc_status qc__periods_create(qc_ctx *ctx, const qc_cover *cover, const qc__seams *seams,
-                             const double *cotangent, const int8_t *face_turn, qc__periods **out);
+                             const double *cotangent, const int8_t *face_turn,
+                             const qc_solver *solver, qc__periods **out);
 void qc__periods_free(qc__periods *periods);
 /* P as a real symmetric matrix of size 2 n_free, column-major: variable j is (2j, 2j+1) = (re, im).
  */

@@ -250,7 +250,7 @@ static qc_status prepare(rounding *r) {
     status = read_periods(r);
     if (status == QC_OK && n > 0)
         status = qc__periods_create(r->ctx, &cover, r->seams, r->cotangent, seamless->face_turn,
-                                    &r->periods);
+                                    r->options.solver, &r->periods);
     return status;
 }
 

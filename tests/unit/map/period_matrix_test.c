@@ -24,7 +24,7 @@ static void for_all(check *body) {
             qc__seams *seams = setting_seams(s, lattice);
             qc__periods *periods = NULL;
             must(ctx, qc__periods_create(ctx, &s->cover, seams, s->stiffness, s->map->face_turn,
-                                         &periods));
+                                         NULL, &periods));
             if (seams->n_free > 0) body(s, seams, periods);
             qc__periods_free(periods);
             qc__seams_free(seams);
@@ -180,8 +180,8 @@ static void test_threads(void **state) {
         setting *s = setting_create(ctx, &CASES[1], 300);
         qc__seams *seams = setting_seams(s, QC_LATTICE_QUADS);
         qc__periods *periods = NULL;
-        must(ctx,
-             qc__periods_create(ctx, &s->cover, seams, s->stiffness, s->map->face_turn, &periods));
+        must(ctx, qc__periods_create(ctx, &s->cover, seams, s->stiffness, s->map->face_turn, NULL,
+                                     &periods));
         n = 2 * seams->n_free;
         P[threads - 1] = matrix_of(s, periods);
         qc__periods_free(periods);

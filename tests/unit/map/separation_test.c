@@ -56,7 +56,7 @@ static problem *problem_create(qc_ctx *ctx, const surface_case *c, double quads,
     p->n = p->seams->n_free;
     p->reach = 3 * p->s->sizing->edge_length;
     must(ctx, qc__periods_create(ctx, &p->s->cover, p->seams, p->s->stiffness, p->s->map->face_turn,
-                                 &p->periods));
+                                 NULL, &p->periods));
     must(ctx, qc__separation_create(ctx, p->seams, p->reach, &p->separation));
     p->P = ARRAY(double, 4 * (int64_t)p->n * p->n);
     p->t = ARRAY(double, 2 * (int64_t)p->n);
