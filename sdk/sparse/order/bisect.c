@@ -3,7 +3,7 @@
 #include "sdk/sparse/order/internal.h"
 #include <string.h>
 
-enum { DIRECT = 1000, BAND = 16 };
+enum { DIRECT = 500, BAND = 16 };
 
 /* Breadth-first search through all components, the first from element `root`: elements in the
  * order of their discovery. */
@@ -17,7 +17,7 @@ static void breadth_first(const qc__cover *C, int32_t root, int32_t *distance, i
             const int32_t u = queue[k], d = distance[u] + 1;
             for (int32_t p = C->element[u].begin; p < C->element[u].active; p++) {
                 const qc__net net = C->net[C->entry[p]];
-                for (int32_t q = net.begin; q < net.end; q++) {
+                for (int32_t q = net.begin + (C->element_of[net.begin] == u); q < net.end; q++) {
                     const int32_t v = C->element_of[q];
                     const bool fresh = distance[v] == -1;
                     queue[queued] = v;

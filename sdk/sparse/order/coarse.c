@@ -4,7 +4,7 @@
 #include "sdk/sparse/order/internal.h"
 #include <string.h>
 
-enum { COARSEST = 600, BAND = 4, STEPS = 6, ENDS = 4 };
+enum { COARSEST = 600, BAND = 4, STEPS = 6, ENDS = 4, THOROUGH = 3000 };
 
 /* Nodes in the order of their discovery from `root`, component after component. */
 static void breadth_first(const qc__graph *G, int32_t root) {
@@ -43,7 +43,7 @@ static void consider(qc__graph *G, double m, double *least) {
 static void cut_ends(qc__graph *G, int32_t m, double *least) {
     memset(G->flow, 0, (size_t)G->arcs * sizeof *G->flow);
     G->value = 0;
-    for (int t = 1; t <= STEPS; t++) {
+    for (int t = 1; t <= STEPS; t += m > THOROUGH ? 1 : 2) {
         const int32_t fixed = (int32_t)((0.15 + 0.05 * t) * m);
         for (int32_t i = 0, sum = 0; i < G->n; i++) {
             const int32_t k = G->order[i];
@@ -73,7 +73,7 @@ static void cut_coarsest(qc__graph *G, int32_t m) {
     }
     breadth_first(G, 0);
     int32_t end = G->order[G->n - 1], *nearest = G->nearest;
-    for (int t = 0; t < ENDS; t++) {
+    for (int t = 0; t < (m > THOROUGH ? ENDS : 1); t++) {
         breadth_first(G, end);
         end = 0;
         for (int32_t k = 0; k < G->n; k++) {

@@ -6,7 +6,7 @@
 #include "sdk/sparse/order/internal.h"
 #include <string.h>
 
-enum { LEAF = 140, CLUSTER = 16, TASK = 6000, BATCH = 32 };
+enum { LEAF = 128, CLUSTER = 16, TASK = 6000, BATCH = 32 };
 
 typedef struct task {
     qc__piece piece, child[2]; /* children without rows do not exist */

@@ -59,10 +59,14 @@ static bool layers(network *N, int own) {
     int32_t *distance = N->w->distance, *queue = N->w->queue;
     for (int32_t k = 0; k < N->queued; k++) distance[queue[k]] = UNSEEN;
     N->queued = 0;
+    bool meet = false;
     for (int32_t k = 0; k < N->count[own]; k++) reach(N, N->terminal[own][k], 0);
     for (int32_t k = 0; k < N->queued; k++) {
         const int32_t u = queue[k], d = distance[u] + 1;
-        if (N->w->side[u] == !own) return true;
+        if (N->w->side[u] == !own) {
+            meet = true;
+            continue;
+        }
         for (int32_t p = C->element[u].begin; p < C->element[u].active; p++) {
             const int32_t r = C->entry[p], in = flow[2 * r + own], out = flow[2 * r + !own];
             if (in != -1 && u != out) { /* a full row only takes flow back */
@@ -70,10 +74,15 @@ static bool layers(network *N, int own) {
                 continue;
             }
             const qc__net net = C->net[r];
+            if (net.end - net.begin == 2) {
+                const int32_t a = C->element_of[net.begin], b = C->element_of[net.begin + 1];
+                reach(N, u == a ? b : a, d);
+                continue;
+            }
             for (int32_t q = net.begin; q < net.end; q++) reach(N, C->element_of[q], d);
         }
     }
-    return false;
+    return meet;
 }
 
 /* Flow along row r from u to v. */

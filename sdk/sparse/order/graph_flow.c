@@ -5,7 +5,8 @@
 /* Distance of the nodes to the sinks by arcs which are not full, -1: none; whether a source has
  * one. */
 static bool layers(qc__graph *G) {
-    int32_t queued = 0, last = INT32_MAX;
+    int32_t queued = 0;
+    bool found = false;
     for (int32_t k = 0; k < G->n; k++) {
         const bool sink = G->side[k] == QC__SINK;
         G->distance[k] = sink ? 0 : -1;
@@ -14,10 +15,9 @@ static bool layers(qc__graph *G) {
     }
     for (int32_t i = 0; i < queued; i++) {
         const int32_t u = G->queue[i];
-        if (G->distance[u] >= last) break;
         if (G->side[u] == QC__SOURCE) {
-            last = G->distance[u];
-            break;
+            found = true;
+            continue;
         }
         for (int32_t a = G->start[u]; a < G->start[u + 1]; a++) {
             const int32_t v = G->arc[a];
@@ -26,7 +26,7 @@ static bool layers(qc__graph *G) {
             G->queue[queued++] = v;
         }
     }
-    return last != INT32_MAX;
+    return found;
 }
 
 static int32_t open_arc(const qc__graph *G, int32_t u) {

@@ -40,73 +40,60 @@ void qc__row_sides(const qc__cover *C, qc__cut_work *w, int32_t size[3]) {
     }
 }
 
-typedef struct copying {
-    const qc__dissection *D;
-    qc__cover from, to;
-    int32_t *row_side, *number; /* rows of `from`: side, number in `to` or -1 */
-    int32_t entry, member;      /* written so far */
-    int32_t separator;          /* next place in the order */
-} copying;
-
-/* The number of row r in the copy, given at the first time. */
-static int32_t number_row(copying *c, int32_t r) {
-    if (c->number[r] == -1) {
-        const qc__net net = c->from.net[r];
-        c->to.net[c->to.n] = (qc__net){c->member, c->member, net.name};
-        c->member += net.end - net.begin;
-        c->number[r] = c->to.n++;
-    }
-    return c->number[r];
-}
-
-static void copy_element(copying *c, int32_t e) {
-    const qc__element E = c->from.element[e];
-    int32_t active = c->entry, last = c->entry + E.end - E.begin;
-    for (int32_t p = E.begin; p < E.active; p++) {
-        const int32_t r = c->from.entry[p];
-        if (c->row_side[r] == QC__FREE) {
-            c->to.entry[--last] = ~c->from.net[r].name;
-            if (c->number[r] == -1) c->D->perm[c->separator++] = c->from.net[r].name;
-            c->number[r] = 0;
-        } else {
-            const int32_t k = number_row(c, r);
-            c->to.entry[active++] = k;
-            c->to.element_of[c->to.net[k].end++] = c->to.m;
+/* Copies the elements of one side, in the order given, to the place of *to; *after: the place
+ * behind it. Rows of the separator go to the order from *separator on. */
+static void copy_side(const qc__dissection *D, const qc__cover *C, const qc__cut_work *w, int side,
+                      const int32_t *order, int32_t *separator, qc__piece *to, qc__piece *after) {
+    const qc__cover B = qc__piece_view(D, to);
+    const int32_t *row_side = w->flow;
+    int32_t *number = w->flow + C->n; /* of the rows in the copy, or -1 */
+    int32_t m = 0, n = 0, entry = 0, member = 0;
+    for (int32_t k = 0; k < C->m; k++) {
+        const int32_t e = order ? order[k] : k;
+        if (w->side[e] != side) continue;
+        const qc__element E = C->element[e];
+        const int32_t begin = entry, end = begin + E.end - E.begin;
+        int32_t halo = end;
+        for (int32_t p = E.begin; p < E.active; p++) {
+            const int32_t r = C->entry[p];
+            const qc__net net = C->net[r];
+            if (row_side[r] == QC__FREE) {
+                if (number[r] == -1) D->perm[(*separator)++] = net.name;
+                number[r] = 0;
+                B.entry[--halo] = ~net.name;
+                continue;
+            }
+            if (number[r] == -1) {
+                B.net[n] = (qc__net){member, member, net.name};
+                member += net.end - net.begin;
+                number[r] = n++;
+            }
+            B.entry[entry++] = number[r];
+            B.element_of[B.net[number[r]].end++] = m;
         }
+        if (entry == begin) continue; /* no row is left */
+        B.element[m++] = (qc__element){begin, entry, end, E.cluster};
+        for (int32_t p = E.active, q = entry; p < E.end; p++) B.entry[q++] = C->entry[p];
+        entry = end;
     }
-    if (active == c->entry) return; /* no row is left */
-    memcpy(c->to.entry + active, c->from.entry + E.active,
-           (size_t)(E.end - E.active) * sizeof *c->to.entry);
-    c->to.element[c->to.m++] =
-        (qc__element){c->entry, active, c->entry + E.end - E.begin, E.cluster};
-    c->entry += E.end - E.begin;
+    to->m = m;
+    to->n = n;
+    *after = *to;
+    after->element += m;
+    after->row += n;
+    after->entry += entry;
+    after->member += member;
 }
 
 void qc__piece_split(const qc__dissection *D, const qc__piece *P, const int32_t *order,
                      const int32_t size[3], qc__piece child[2]) {
+    const qc__cover C = qc__piece_view(D, P);
     const qc__cut_work w = qc__piece_work(D, P);
-    copying c = {.D = D,
-                 .from = qc__piece_view(D, P),
-                 .row_side = w.flow,
-                 .number = w.flow + P->n,
-                 .separator = P->row + P->n - size[QC__FREE]};
-    qc__piece at = *P;
-    at.buffer = !P->buffer;
-    memset(c.number, 255, (size_t)P->n * sizeof *c.number);
-    for (int s = 0; s < 2; s++) {
-        at.m = at.n = 0;
-        c.to = qc__piece_view(D, &at);
-        c.entry = c.member = 0;
-        for (int32_t k = 0; k < P->m; k++) {
-            const int32_t e = order ? order[k] : k;
-            if (w.side[e] == s) copy_element(&c, e);
-        }
-        at.m = c.to.m;
-        at.n = c.to.n;
-        child[s] = at;
-        at.element += at.m;
-        at.row += at.n;
-        at.entry += c.entry;
-        at.member += c.member;
-    }
+    int32_t separator = P->row + P->n - size[QC__FREE];
+    qc__piece after;
+    memset(w.flow + P->n, 255, (size_t)P->n * sizeof *w.flow);
+    child[0] = *P;
+    child[0].buffer = !P->buffer;
+    copy_side(D, &C, &w, 0, order, &separator, &child[0], &child[1]);
+    copy_side(D, &C, &w, 1, order, &separator, &child[1], &after);
 }
