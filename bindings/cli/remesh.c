@@ -17,7 +17,7 @@ static const char about[] =
     "--set step.param=value changes any parameter of any step; `quadcover stages` lists them.";
 static const char synopsis[] = "IN -o OUT.obj [options]";
 
-enum { MODE_NONE = 0, MODE_FAST, MODE_RELOCATE, MODE_BEST };
+enum { MODE_NONE = 0, MODE_FAST, MODE_RELOCATE, MODE_BEST }; /* none = best */
 static const char *const modes[] = {"", "fast", "relocate", "best", NULL};
 
 typedef struct settings {
@@ -94,8 +94,8 @@ static int check_outputs(const settings *s) {
 static int check_settings(const settings *s) {
     if (s->report)
         return cli_error(EXIT_USAGE, "not built yet: --report; --stats gives the figures as JSON");
-    if (s->mode > MODE_FAST)
-        return cli_error(EXIT_USAGE, "not built yet: --mode %s; use --mode fast", modes[s->mode]);
+    if (s->pipeline && s->mode != MODE_NONE)
+        return cli_error(EXIT_USAGE, "--pipeline brings its own steps; leave --mode out");
     if ((s->quads > 0) + (s->edge_length > 0) + (s->edge_length_rel > 0) > 1)
         return cli_error(EXIT_USAGE, "give one of --quads, --edge-length and --edge-length-rel");
     if (s->no_features && s->sharp > 0)
@@ -112,6 +112,10 @@ static int check_settings(const settings *s) {
     return check_outputs(s);
 }
 
+static int mode_of(const settings *s) {
+    return s->mode == MODE_NONE ? MODE_BEST : s->mode;
+}
+
 static int build_pipeline(run *r, const settings *s) {
     qc_default_pipeline_options options = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
     options.quads = s->quads;
@@ -120,16 +124,13 @@ static int build_pipeline(run *r, const settings *s) {
     options.crease_angle = s->no_features ? -1 : s->sharp;
     options.field_path = s->field;
     options.seed = (uint64_t)s->seed;
+    options.mode = mode_of(s) - MODE_FAST + QC_MODE_FAST;
     const int status = cli_registry(r->session.ctx, &s->plugin, &r->registry);
     if (status != EXIT_DONE) return status;
     return cli_pipeline(r->session.ctx, r->registry, s->pipeline, &options, &s->set, &r->pipeline);
 }
 
 static int compute(run *r, const settings *s) {
-    if (!s->pipeline && s->mode == MODE_NONE)
-        cli_session_warn(
-            &r->session,
-            "mode best is not built yet: ran mode fast (name --mode fast to silence this)");
     qc_remesh_options options = QC_REMESH_OPTIONS_INIT;
     options.strict = s->strict;
     if (qc_remesh(r->session.ctx, r->pipeline, r->input, &options, &r->result) != QC_OK)
@@ -164,9 +165,9 @@ static int write_field(run *r, const char *path) {
 static int write_stats(run *r, const settings *s) {
     if (!s->stats) return EXIT_DONE;
     r->times.total = cli_seconds() - r->session.start;
-    char *text =
-        cli_stats_json(r->result.report, r->pipeline, s->input, s->pipeline ? "pipeline" : "fast",
-                       &r->times, r->session.n_warnings, (const char *const *)r->session.warning);
+    char *text = cli_stats_json(r->result.report, r->pipeline, s->input,
+                                s->pipeline ? "pipeline" : modes[mode_of(s)], &r->times,
+                                r->session.n_warnings, (const char *const *)r->session.warning);
     if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->stats);
     const int status = cli_write_text(s->stats, text);
     free(text);

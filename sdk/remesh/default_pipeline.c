@@ -12,10 +12,13 @@ static const step before_field[] = {
 static const step computed_field[] = {{"curvature", "qc.field.curvature"},
                                       {"smooth", "qc.field.smooth"}};
 static const step imported_field[] = {{"field", "qc.field.import"}};
-static const step after_field[] = {{"matching", "qc.matching"}, {"split", "qc.split"},
-                                   {"hodge", "qc.hodge"},       {"round", "qc.round"},
-                                   {"untangle", "qc.untangle"}, {"extract", "qc.extract"},
-                                   {"measure", "qc.measure"}};
+static const step after_field[] = {{"matching", "qc.matching"}};
+static const step optimisation[] = {{"cancel", "qc.optimize.cancel"},
+                                    {"curl", "qc.optimize.curl"},
+                                    {"balance", "qc.optimize.balance"}};
+static const step after_matching[] = {{"split", "qc.split"},     {"hodge", "qc.hodge"},
+                                      {"round", "qc.round"},     {"untangle", "qc.untangle"},
+                                      {"extract", "qc.extract"}, {"measure", "qc.measure"}};
 
 #define APPEND(pipeline, steps) append(pipeline, steps, sizeof(steps) / sizeof *(steps))
 
@@ -46,6 +49,14 @@ static qc_status set_density(qc_ctx *ctx, qc_pipeline *pipeline,
     return set_real(pipeline, "size", "quads", o->quads > 0 ? o->quads : QC__DEFAULT_QUADS);
 }
 
+/* Moving only: without the last step. */
+static qc_status append_optimisation(qc_pipeline *pipeline, int32_t mode) {
+    if (mode == QC_MODE_RELOCATE) return append(pipeline, optimisation, 2);
+    if (mode != QC_MODE_BEST) return QC_OK;
+    const qc_status status = APPEND(pipeline, optimisation);
+    return status == QC_OK ? qc_pipeline_set(pipeline, "curl", "create", "true") : status;
+}
+
 /* Every parameter called "seed" of any step. */
 static qc_status set_seed(qc_pipeline *pipeline, uint64_t seed) {
     char text[24];
@@ -68,6 +79,8 @@ static qc_status fill(qc_ctx *ctx, qc_pipeline *pipeline, const qc_default_pipel
         status =
             o->field_path ? APPEND(pipeline, imported_field) : APPEND(pipeline, computed_field);
     if (status == QC_OK) status = APPEND(pipeline, after_field);
+    if (status == QC_OK) status = append_optimisation(pipeline, o->mode);
+    if (status == QC_OK) status = APPEND(pipeline, after_matching);
     if (status == QC_OK) status = set_density(ctx, pipeline, o);
     if (status == QC_OK && o->field_path)
         status = qc_pipeline_set(pipeline, "field", "file", o->field_path);

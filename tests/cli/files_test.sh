@@ -40,6 +40,12 @@ run 1 remesh torus.obj -o late.obj --quads 500 --mode fast --time-limit 0.000000
 error_says 'time limit'
 [ -e late.obj ] && fail 'written although out of time'
 
+for mode in relocate best; do
+    for threads in 1 2; do
+        run 0 remesh torus.obj -o $mode$threads.obj --quads 500 --mode $mode --threads $threads
+    done
+    cmp ${mode}1.obj ${mode}2.obj || fail "mode $mode depends on the number of threads"
+done
 run 0 remesh torus.obj -o quads.obj --quads 500
-[ "$(grep -c 'not built yet' err)" -eq 1 ] || fail 'the default mode is not explained'
+cmp quads.obj best1.obj || fail 'the default mode is not best'
 finish

@@ -11,7 +11,7 @@ for key in quadcover input vertices faces genus boundaries components density ed
     pipeline versions; do
     out_says "\"$key\": "
 done
-out_says 'not built yet' '"radius": 2'
+out_says '"mode": "best"' '"radius": 2'
 between "$(value stats.json genus)" 0 0 genus
 between "$(value stats.json components)" 1 1 components
 between "$(value stats.json non_quads)" 0 0 'faces that are no quads'

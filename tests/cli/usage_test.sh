@@ -34,8 +34,8 @@ run 2 remesh in.obj -o out.obj --quads 100 --edge-length 1
 error_says 'give one of'
 run 2 remesh in.obj -o out.obj --mode fats
 error_says 'closest: fast'
-run 2 remesh in.obj -o out.obj --mode best
-error_says 'not built yet' best
+run 2 remesh in.obj -o out.obj --mode best --pipeline p.json
+error_says --mode
 run 2 remesh in.obj -o out.obj --report r.html
 error_says 'not built yet' --report
 run 2 remesh in.obj -o out.obj --progress loud

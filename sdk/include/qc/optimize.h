@@ -86,6 +86,26 @@ typedef struct qc_reduce_options {
 QC_API qc_status qc_distortion_reduce(qc_ctx *ctx, qc_distortion *distortion,
                                       const qc_reduce_options *options);
 
+/* --- cancelling pairs (Algorithm 6.1, steps 1 and 4) ------------------------------------------ */
+
+typedef struct qc_cancel_options {
+    uint32_t struct_size;
+    int32_t neighbours; /* nearest branch points of opposite sign that are tried for each one   */
+    double increase;    /* a pair is cancelled when E_D then rises by less than this: 0 in step 1,
+                           the expected fall of E_H (6.4) in step 4; parameter units               */
+    double spacing;     /* pairs nearer than this (units of the mesh) are cancelled at any price
+                           below `most`, since rounding could not part them; 0 = none              */
+    double most; /* parameter units                                                         */
+} qc_cancel_options;
+#define QC_CANCEL_OPTIONS_INIT                                                                     \
+    { sizeof(qc_cancel_options), 3, 0.0, 0.0, 0.0 }
+
+/* Measures the change of E_D for every pair, then cancels in order of it, each measured again just
+ * before. *cancelled (may be NULL) counts the pairs. Deterministic; errors and cancelling as
+ * qc_distortion_reduce. */
+QC_API qc_status qc_distortion_cancel(qc_ctx *ctx, qc_distortion *distortion,
+                                      const qc_cancel_options *options, int32_t *cancelled);
+
 #ifdef __cplusplus
 }
 #endif

@@ -14,6 +14,11 @@ extern "C" {
 
 /* --- the default pipeline -------------------------------------------------------------------- */
 
+enum {
+    QC_MODE_FAST = 0,     /* none */
+    QC_MODE_RELOCATE = 1, /* steps cancel and curl: they move and cancel */
+    QC_MODE_BEST = 2      /* cancel, curl with new ones, balance: Algorithm 6.1 */
+};
 typedef struct qc_default_pipeline_options {
     uint32_t struct_size;
     /* Density: at most one is > 0; all 0 = the default of stage qc.size. */
@@ -23,14 +28,15 @@ typedef struct qc_default_pipeline_options {
     double crease_angle;    /* degrees; 0 = default (35); < 0: neither creases nor boundaries */
     const char *field_path; /* .rawfield or .rosy to use instead of a computed field; NULL = none */
     uint64_t seed;          /* of stages which have one; 0 = their default */
+    int32_t mode;           /* QC_MODE_...: optimisation of the branch points */
 } qc_default_pipeline_options;
 #define QC_DEFAULT_PIPELINE_OPTIONS_INIT                                                           \
-    { sizeof(qc_default_pipeline_options), 0.0, 0.0, 0.0, 0.0, NULL, 0 }
+    { sizeof(qc_default_pipeline_options), 0.0, 0.0, 0.0, 0.0, NULL, 0, QC_MODE_FAST }
 
-/* repair, features, size, curvature and smooth (or field, when a file is given), matching, hodge,
- * round, untangle, extract, measure. Change it with qc_pipeline_set, _insert, _remove. options NULL
- * = defaults. Errors: ARGUMENT (densities or a range), NOT_FOUND (a stage is not registered),
- * NOMEM. */
+/* repair, features, size, curvature and smooth (or field, when a file is given), matching, cancel,
+ * curl and balance (as `mode` says), split, hodge, round, untangle, extract, measure. Change it
+ * with qc_pipeline_set, _insert, _remove. options NULL = defaults. Errors: ARGUMENT (densities or a
+ * range), NOT_FOUND (a stage is not registered), NOMEM. */
 QC_API qc_status qc_default_pipeline(qc_ctx *ctx, qc_registry *registry,
                                      const qc_default_pipeline_options *options, qc_pipeline **out);
 

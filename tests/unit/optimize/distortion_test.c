@@ -2,14 +2,6 @@
  * removal from scratch, refused changes leave no trace. */
 #include "unit/optimize/scratch.h"
 
-static qc_flip_step random_flip(const qc_distortion *d, const qc_mesh *mesh, uint64_t *seed) {
-    for (;;) {
-        const int32_t e = (int32_t)(uniform(seed) * mesh->n_edges);
-        const qc_flip_step flip = {e, uniform(seed) < 0.5 ? 1 : -1};
-        if (qc_distortion_can_flip(d, e)) return flip;
-    }
-}
-
 /* Trials, changes of one to four flips and refusals, each against scratch now and then. */
 static void random_walk(qc_ctx *ctx, qc_mesh *mesh, bool aligned, bool sized, int steps) {
     qc_matching *m = smooth_matching(ctx, mesh, aligned);

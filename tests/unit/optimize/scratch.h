@@ -64,4 +64,13 @@ static inline qc_matching *smooth_matching(qc_ctx *ctx, const qc_mesh *mesh, boo
     return m;
 }
 
+static inline qc_flip_step random_flip(const qc_distortion *d, const qc_mesh *mesh,
+                                       uint64_t *seed) {
+    for (;;) {
+        const int32_t e = (int32_t)(uniform(seed) * mesh->n_edges);
+        const qc_flip_step flip = {e, uniform(seed) < 0.5 ? 1 : -1};
+        if (qc_distortion_can_flip(d, e)) return flip;
+    }
+}
+
 #endif
