@@ -1,6 +1,6 @@
 /* A fork-join loop over fixed chunks. Workers sleep between loops; chunks are handed out by one
- * atomic counter, so which thread runs a chunk varies but the chunks themselves never do. The caller
- * waits only for workers which joined: one that wakes up late finds the loop closed. */
+ * atomic counter, so which thread runs a chunk varies but the chunks themselves never do. The
+ * caller waits only for workers which joined: one that wakes up late finds the loop closed. */
 #include "sdk/base/context_private.h"
 #include <pthread.h>
 

@@ -27,7 +27,7 @@ typedef struct qc__task {
 /* First the tasks [task, task_end) in parallel, then the supernodes top[top..top_end) in order. */
 typedef struct qc__step {
     int32_t task, task_end, top, top_end;
-    double flops;
+    double cost; /* real flops, or work which takes as long (complex: four times) */
 } qc__step;
 
 /* Schedule of the multifrontal factorisation. Update matrices of supernodes inside a task live on
@@ -43,7 +43,7 @@ typedef struct qc__plan {
     int64_t stack, area; /* entries of one worker's stack and of the shared area */
     int64_t work;        /* doubles which qc__front_factor needs at most        */
     int32_t largest_front, largest_width;
-    double flops;
+    double cost; /* of all */
 } qc__plan;
 
 /* workspace.c */

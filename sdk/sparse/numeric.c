@@ -88,19 +88,18 @@ static qc_status not_posdef(qc_ctx *ctx, const qc_symbolic *S, int32_t column) {
                     (int)row);
 }
 
-/* done: flops before this step */
+/* done: cost before this step */
 static qc_status run_step(qc_ctx *ctx, run *R, const qc__step *step, double done) {
     const qc__plan *plan = &R->S->plan;
     const int32_t tops = step->top_end - step->top;
-    if (!qc__progress(ctx, done / plan->flops)) return QC_ERR_CANCELLED;
+    if (!qc__progress(ctx, done / plan->cost)) return QC_ERR_CANCELLED;
     R->task = step->task;
     qc__parallel_for(ctx, step->task_end - step->task, 1, run_tasks, R);
     for (int32_t t = step->task; t < step->task_end; t++)
         if (R->space->failed[t] >= 0) return not_posdef(ctx, R->S, R->space->failed[t]);
     for (int32_t k = 0; k < tops; k++) {
-        const double begin = done + step->flops * k / tops,
-                     end = done + step->flops * (k + 1) / tops;
-        const qc__range outer = qc__range_begin(ctx, NULL, begin / plan->flops, end / plan->flops);
+        const double begin = done + step->cost * k / tops, end = done + step->cost * (k + 1) / tops;
+        const qc__range outer = qc__range_begin(ctx, NULL, begin / plan->cost, end / plan->cost);
         const int32_t bad = factor_supernode(R, ctx, plan->top[step->top + k], 0);
         qc__range_end(ctx, outer);
         if (bad == QC__CANCELLED) return QC_ERR_CANCELLED;
@@ -115,7 +114,7 @@ static qc_status run_plan(qc_ctx *ctx, run *R) {
     for (int32_t i = 0; i < plan->nstep; i++) {
         const qc_status status = run_step(ctx, R, &plan->step[i], done);
         if (status != QC_OK) return status;
-        done += plan->step[i].flops;
+        done += plan->step[i].cost;
     }
     return qc__progress(ctx, 1.0) ? QC_OK : QC_ERR_CANCELLED;
 }

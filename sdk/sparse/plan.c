@@ -2,8 +2,8 @@
  * the tree runs, and where every update matrix lives. Depends on the tree alone. */
 #include "sdk/sparse/internal.h"
 
-/* A step is about this many real flops (complex: four times), so that progress is felt. */
-static const double step_flops = 2.5e8;
+/* A step costs about this much, so that progress is felt. */
+static const double step_cost = 2.5e8;
 
 static int32_t width_of(const qc_symbolic *S, int32_t s) {
     return S->super[s + 1] - S->super[s];
@@ -60,7 +60,7 @@ static void cut_tree(const qc_symbolic *S, const double *cost, const int32_t *fi
         const bool root_of_task = cost[s] <= limit && (p == -1 || cost[p] > limit);
         if (root_of_task) {
             const bool joins = end == first[s] && task_cost + cost[s] <= limit;
-            if (!joins && (step->flops > 4 * step_flops || step->top_end > step->top + 15)) {
+            if (!joins && (step->cost > 4 * step_cost || step->top_end > step->top + 15)) {
                 step = &plan->step[plan->nstep++];
                 *step = (qc__step){plan->ntask, plan->ntask, ntop, ntop, 0};
             }
@@ -72,12 +72,12 @@ static void cut_tree(const qc_symbolic *S, const double *cost, const int32_t *fi
                 task_cost = cost[s];
                 step->task_end = plan->ntask;
             }
-            step->flops += cost[s];
+            step->cost += cost[s];
             end = s + 1;
         } else if (cost[s] > limit) {
             plan->top[ntop++] = s;
             step->top_end = ntop;
-            step->flops += front_cost(S, s);
+            step->cost += front_cost(S, s);
         }
     }
 }
@@ -174,10 +174,10 @@ qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S) {
     qc_status status = QC_ERR_NOMEM;
     if (cost && first && depth && live && plan->task && plan->step && plan->top && plan->update &&
         plan->shared) {
-        plan->flops = subtree_costs(S, cost, first);
-        double limit = plan->flops / 16;
+        plan->cost = subtree_costs(S, cost, first);
+        double limit = plan->cost / 16;
         if (limit < 1e6) limit = 1e6; /* smaller pieces would cost more than they gain */
-        if (limit > step_flops) limit = step_flops;
+        if (limit > step_cost) limit = step_cost;
         cut_tree(S, cost, first, limit, plan);
         for (int32_t s = ns; s-- > 0;) depth[s] = S->parent[s] == -1 ? 0 : depth[S->parent[s]] + 1;
         live_list list = {live, 0};

@@ -99,17 +99,22 @@ QC__INLINE void run_tile(const int vectors, const int columns, const bool full, 
     }                                                                                              \
     static void solve_##V##_##Q(const tile_job *job) {                                             \
         run_tile(V, Q, false, true, job);                                                          \
-    }
-TILE(1, 1)
-TILE(1, 2)
-TILE(1, 3)
-TILE(1, 4)
-TILE(2, 1)
-TILE(2, 2)
-TILE(2, 3)
-TILE(2, 4) TILE(3, 1) TILE(3, 2) TILE(3, 3) TILE(3, 4)
+    }                                                                                              \
+    _Static_assert((V) <= 3 && (Q) <= 4, "size of a tile")
+TILE(1, 1);
+TILE(1, 2);
+TILE(1, 3);
+TILE(1, 4);
+TILE(2, 1);
+TILE(2, 2);
+TILE(2, 3);
+TILE(2, 4);
+TILE(3, 1);
+TILE(3, 2);
+TILE(3, 3);
+TILE(3, 4);
 
-    typedef void tile_function(const tile_job *);
+typedef void tile_function(const tile_job *);
 static tile_function *const products[3][4] = {{product_1_1, product_1_2, product_1_3, product_1_4},
                                               {product_2_1, product_2_2, product_2_3, product_2_4},
                                               {product_3_1, product_3_2, product_3_3, product_3_4}};
