@@ -11,6 +11,7 @@ void qc_symbolic_free(qc_symbolic *S) {
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) qc__free(arrays[i]);
     qc__plan_free(&S->plan);
     qc__free(S->solve.node);
+    qc__free(S->solve.target);
     qc__free(S);
 }
 

@@ -59,9 +59,11 @@ void qc__workspace_free(qc__workspace *space); /* NULL is fine */
 
 /* One supernode in a solve: w own columns from `first` on, m rows below. In a forward solve the
  * updates of its children add up to r = w + m rows at `sum` on the stack of the worker; its own
- * update goes into the sum of its parent, or, where it leaves its task, to a slot of m rows. */
+ * update goes into the sum of its parent, or, where it leaves its task, to a slot of m rows. A sum
+ * has one spare row. */
 typedef struct qc__solve_node {
     int64_t panel, below; /* offsets in values; in rows and relative of the rows below */
+    int64_t push;         /* offset in target */
     int64_t sum, to;      /* rows; to: sum of the parent, or slot in the area */
     int32_t first, w, m;
     bool leaves, top; /* the task of its parent differs; is above all tasks: children have slots */
@@ -71,6 +73,8 @@ typedef struct qc__solve_node {
  */
 typedef struct qc__solve_plan {
     qc__solve_node *node; /* nsuper */
+    int32_t
+        *target; /* rows in the sum of the parent, each list up to a multiple of QC__SOLVE_PAD */
     int64_t stack, area, work;
     const int32_t *top; /* supernodes above all tasks, ascending: borrowed from qc__plan */
     int32_t ntop;

@@ -20,6 +20,17 @@ static inline void subtract_columns(const int G, bool fresh, int64_t n, const do
     }
 }
 
+/* x <- L^{-1} x for the triangle of G columns; re, im: what subtract_columns wants of it */
+static inline void forward_triangle(const int G, const double *L, int64_t ld, entry *x, vec *re,
+                                    vec *im) {
+    for (int j = 0; j < G; j++)
+        for (int i = j + 1; i < G; i++) x[i] = e_subtract(e_load(L + j * ld + NC * i), x[j], x[i]);
+    for (int g = 0; g < G; g++) {
+        re[g] = v_set(e_re(x[g]));
+        im[g] = v_alternate(e_im(x[g]));
+    }
+}
+
 /* Columns [k, k + G): own triangle, own rows after the group, rows below. */
 static inline void forward_group(const int G, bool fresh, const panel *P, int64_t k, double *x,
                                  double *u) {
@@ -28,14 +39,8 @@ static inline void forward_group(const int G, bool fresh, const panel *P, int64_
     entry t[GROUP];
     vec re[GROUP], im[GROUP];
     for (int g = 0; g < G; g++) t[g] = e_load(x + NC * (k + g));
-    for (int j = 0; j < G; j++)
-        for (int i = j + 1; i < G; i++)
-            t[i] = e_subtract(e_load(L + j * P->ld + NC * (k + i)), t[j], t[i]);
-    for (int g = 0; g < G; g++) {
-        e_store(x + NC * (k + g), t[g]);
-        re[g] = v_set(e_re(t[g]));
-        im[g] = v_alternate(e_im(t[g]));
-    }
+    forward_triangle(G, L + NC * k, P->ld, t, re, im);
+    for (int g = 0; g < G; g++) e_store(x + NC * (k + g), t[g]);
     if (next < P->w)
         subtract_columns(G, false, NC * (P->w - next), L + NC * next, P->ld, re, im, x + NC * next);
     subtract_columns(G, fresh, NC * P->m, L + NC * P->w, P->ld, re, im, u);
@@ -101,7 +106,28 @@ static void forward_supernode(const qc__rhs_block *B, const qc__solve_node *N, d
     else
         for (int64_t i = 0; i < P.m; i++)
             add_to(to + NC * local[i], e_add(e_load(u + NC * i), e_load(below + NC * i)));
-    clear(NC * (P.w + P.m), sum);
+    clear(NC * (P.w + P.m + 1), sum);
+}
+
+/* A supernode of G columns, most of all: one loop over the rows below for everything. Vectors past
+ * the end of the rows are pushed too, to the spare row of the parent. */
+static inline void forward_few(const int G, const qc__rhs_block *B, const qc__solve_node *N,
+                               double *sum, double *to) {
+    const panel P = panel_of(B->F, N);
+    const int32_t *target = B->F->S->solve.target + N->push;
+    double *Y = B->Y + NC * (int64_t)N->first, *below = sum + NC * G;
+    entry x[GROUP];
+    vec re[GROUP], im[GROUP];
+    for (int g = 0; g < G; g++) x[g] = e_add(e_load(Y + NC * g), e_load(sum + NC * g));
+    forward_triangle(G, P.L, P.ld, x, re, im);
+    for (int g = 0; g < G; g++) e_store(Y + NC * g, x[g]);
+    for (int64_t i = 0; i < NC * P.m; i += LANES) {
+        double u[LANES];
+        subtract_columns(G, true, LANES, P.L + NC * G + i, P.ld, re, im, u);
+        for (int k = 0; k < LANES; k += NC)
+            add_to(to + NC * *target++, e_add(e_load(u + k), e_load(below + i + k)));
+    }
+    clear(NC * (G + P.m + 1), sum);
 }
 
 void KERNEL(qc__forward_single)(const qc__rhs_block *B, double *work, int32_t first, int32_t last) {
@@ -111,8 +137,25 @@ void KERNEL(qc__forward_single)(const qc__rhs_block *B, double *work, int32_t fi
     for (int32_t s = first; s <= last; s++) {
         const qc__solve_node *N = &S->solve.node[s];
         double *sum = N->top ? top : stack + NC * N->sum;
+        double *to = (N->leaves ? B->area : stack) + NC * N->to;
         if (N->top) collect(B, s, sum);
-        forward_supernode(B, N, sum, (N->leaves ? B->area : stack) + NC * N->to, x, u);
+        switch (N->leaves ? 0 : N->w) {
+        case 1:
+            forward_few(1, B, N, sum, to);
+            break;
+        case 2:
+            forward_few(2, B, N, sum, to);
+            break;
+        case 3:
+            forward_few(3, B, N, sum, to);
+            break;
+        case 4:
+            forward_few(4, B, N, sum, to);
+            break;
+        default:
+            forward_supernode(B, N, sum, to, x, u);
+            break;
+        }
     }
 }
 
