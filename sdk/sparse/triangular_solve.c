@@ -1,6 +1,6 @@
 /* Triangular solves with the supernodal factor: which blocks of right-hand sides and which subtrees
- * run when. The arithmetic is in kernels/solve_single.c and kernels/solve_block.c; its order is
- * that of the tree, so neither threads nor the schedule change a bit. */
+ * run when. The arithmetic is in kernels/forward_single.c, backward_single.c and solve_block.c; its
+ * order is that of the tree, so neither threads nor the schedule change a bit. */
 #include <string.h>
 #include "sdk/sparse/internal.h"
 

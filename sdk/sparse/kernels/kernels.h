@@ -81,8 +81,8 @@ typedef struct qc__kernels {
     /* Writes the journal of one front back: the doubles [journal, end). */
     void (*restore_front)(int64_t r, int64_t w, int64_t k0, double *panel, const double *journal,
                           const double *end);
-    qc__solve_kernels solve[2]; /* solve_single.c, solve_block.c */
-    /* solve_single.c, one supernode with own values x and m rows below: x <- L11^{-1} x, then
+    qc__solve_kernels solve[2]; /* forward_single.c and backward_single.c, solve_block.c */
+    /* The same, one supernode with own values x and m rows below: x <- L11^{-1} x, then
      * u = -L21 x; and x <- L11^{-H} (x / D - L21^H t). x and u may be overwritten up to
      * QC__SOLVE_PAD rows past their end. */
     void (*forward_panel)(const struct qc_factor *F, int32_t s, double *x, double *u);

@@ -18,6 +18,13 @@ static inline panel panel_of(const qc_factor *F, const qc__solve_node *N) {
     return (panel){F->values + NC * N->panel, NC * (int64_t)(N->w + N->m), N->w, N->m};
 }
 
+/* One right-hand side goes by GROUP columns; what is needed next is asked for at least AHEAD
+ * doubles before. */
+enum { GROUP = 4, AHEAD = 512 };
+static inline int64_t ahead_of(int64_t ld) {
+    return GROUP * ld > AHEAD ? GROUP * ld : AHEAD;
+}
+
 /* y_i = x_i^{-1/2} for n <= LANES numbers */
 static inline void inverse_roots(int64_t n, const double *x, double *y) {
     v_store_part(y, v_inverse_root(v_load_part(x, n)), n);

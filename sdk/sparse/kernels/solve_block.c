@@ -194,7 +194,7 @@ static inline double *half_of_pair(const qc__rhs_block *B, int64_t i, int pair, 
 }
 static inline void fetch_rows(const qc__rhs_block *B, int64_t i) {
     for (int64_t k = i + FAR; k < i + FAR + STEP && k < B->F->S->n; k++)
-        for (int d = 0; d < ROW; d += 8) v_prefetch(row_of(B, k) + d);
+        for (int d = 0; d < ROW; d += 8) v_prefetch(row_of(B, k), d);
 }
 
 static inline void load_step(const qc__rhs_block *B, int64_t ld, int64_t i) {

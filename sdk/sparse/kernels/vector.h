@@ -320,12 +320,13 @@ static inline vec v_gather(const double *p, const int32_t *i) {
 }
 #endif
 
-/* Asks for the cache line at p, which may lie outside of any array. */
-static inline void v_prefetch(const double *p) {
+/* Asks for the cache line of p[offset], which may lie outside of any array. */
+static inline void v_prefetch(const double *p, int64_t offset) {
 #if defined(__GNUC__)
-    __builtin_prefetch(p);
+    __builtin_prefetch((const void *)((uintptr_t)p + (uintptr_t)(offset * (int64_t)sizeof *p)));
 #else
     (void)p;
+    (void)offset;
 #endif
 }
 

@@ -1,18 +1,17 @@
-/* Triangular solves with one right-hand side: every entry of L is read once, four columns of a
- * panel at a time, so the speed is that of memory. */
+/* y <- L^{-1} y for one right-hand side: every entry of L is read once, four columns of a panel at
+ * a time. */
 #include "sdk/sparse/kernels/solve.h"
-
-enum { GROUP = 4, AHEAD = 512 };
 
 /* y (n doubles up to a full vector) -= L x for G columns of L; fresh: y is taken as zero. Past the
  * end of a column the next one is read, past the end of the factor its padding. */
 static inline void subtract_columns(const int G, bool fresh, int64_t n, const double *L, int64_t ld,
                                     const vec *re, const vec *im, double *y) {
+    const int64_t ahead = ahead_of(ld);
     for (int64_t i = 0; i < n; i += LANES) {
         vec sum = fresh ? v_zero() : v_load(y + i);
         for (int g = 0; g < G; g++) {
             const vec l = v_load(L + g * ld + i);
-            v_prefetch(L + g * ld + i + AHEAD);
+            v_prefetch(L + g * ld + i, ahead);
             if (NC == 2) sum = v_fnma(im[g], v_swap(l), sum);
             sum = v_fnma(re[g], l, sum);
         }
@@ -157,118 +156,4 @@ void KERNEL(qc__forward_single)(const qc__rhs_block *B, double *work, int32_t fi
             break;
         }
     }
-}
-
-/* Sums over n doubles, in lanes: p += l x and q += l swap(x) for G columns l of L. */
-static inline void dot_columns(const int G, int64_t n, const double *L, int64_t ld, const double *x,
-                               vec *p, vec *q) {
-    for (int64_t i = 0; i < n; i += LANES) {
-        const bool full = i + LANES <= n;
-        const vec a = full ? v_load(x + i) : v_load_part(x + i, n - i), b = v_swap(a);
-        for (int g = 0; g < G; g++) {
-            const double *at = L + g * ld + i;
-            const vec l = full ? v_load(at) : v_load_part(at, n - i);
-            v_prefetch(at - AHEAD);
-            p[g] = v_fma(l, a, p[g]);
-            if (NC == 2) q[g] = v_fma(l, b, q[g]);
-        }
-    }
-}
-
-/* Columns [k, k + G); t: values at the rows below. */
-static inline void backward_group(const int G, const panel *P, int64_t k, const double *D,
-                                  const double *t, double *x) {
-    const double *L = P->L + k * P->ld;
-    const int64_t next = k + G;
-    vec p[GROUP], q[GROUP];
-    for (int g = 0; g < GROUP; g++) p[g] = q[g] = v_zero();
-    dot_columns(G, NC * P->m, L + NC * P->w, P->ld, t, p, q);
-    if (next < P->w) dot_columns(G, NC * (P->w - next), L + NC * next, P->ld, x + NC * next, p, q);
-    /* conj(l) x = (l.re x.re + l.im x.im) + i (l.re x.im - l.im x.re) */
-    double sum[2 * GROUP];
-    entry y[GROUP];
-    v_sum_four(p[0], p[1], p[2], p[3], sum);
-    if (NC == 2) {
-        const vec sign = v_alternate(-1);
-        for (int g = 0; g < G; g++) q[g] = v_mul(sign, q[g]);
-        v_sum_four(q[0], q[1], q[2], q[3], sum + GROUP);
-    }
-    for (int g = 0; g < G; g++)
-        y[g] = e_scale_subtract(1 / D[k + g], e_load(x + NC * (k + g)), e_pair(sum + g, GROUP));
-    for (int i = G - 1; i > 0; i--)
-        for (int j = i - 1; j >= 0; j--)
-            y[j] = e_subtract_conjugate(e_load(L + j * P->ld + NC * (k + i)), y[i], y[j]);
-    for (int g = 0; g < G; g++) e_store(x + NC * (k + g), y[g]);
-}
-
-/* t_i = Y at row_i, up to the next multiple of the vector length (repeating the last row). */
-static inline void gather_rows(const double *Y, int64_t m, const int32_t *row, double *t) {
-    enum { STEP = LANES / NC };
-    int64_t i = 0;
-    for (; i + STEP <= m; i += STEP)
-        v_store(t + NC * i, NC == 2 ? v_gather_pairs(Y, row + i) : v_gather(Y, row + i));
-    if (i == m) return;
-    int32_t rest[STEP];
-    for (int64_t j = 0; j < STEP; j++) rest[j] = row[i + j < m ? i + j : m - 1];
-    v_store(t + NC * i, NC == 2 ? v_gather_pairs(Y, rest) : v_gather(Y, rest));
-}
-
-static inline void backward_panel(const panel *P, const double *D, const double *t, double *x) {
-    int64_t k = P->w;
-    for (; k >= GROUP; k -= GROUP) backward_group(GROUP, P, k - GROUP, D, t, x);
-    switch (k) {
-    case 3:
-        backward_group(3, P, 0, D, t, x);
-        break;
-    case 2:
-        backward_group(2, P, 0, D, t, x);
-        break;
-    case 1:
-        backward_group(1, P, 0, D, t, x);
-        break;
-    default:
-        break;
-    }
-}
-
-void KERNEL(qc__backward_panel)(const qc_factor *F, int32_t s, const double *t, double *x) {
-    const qc__solve_node *N = &F->S->solve.node[s];
-    const panel P = panel_of(F, N);
-    backward_panel(&P, F->D + N->first, t, x);
-}
-
-void KERNEL(qc__backward_single)(const qc__rhs_block *B, double *work, int32_t first,
-                                 int32_t last) {
-    const qc_symbolic *S = B->F->S;
-    for (int32_t s = last; s >= first; s--) {
-        const qc__solve_node *N = &S->solve.node[s];
-        const panel P = panel_of(B->F, N);
-        gather_rows(B->Y, P.m, S->rows + N->below, work);
-        backward_panel(&P, B->F->D + N->first, work, B->Y + NC * (int64_t)N->first);
-    }
-}
-
-/* x <- D^{-1/2} Y in elimination order, columns [begin, end) */
-void KERNEL(qc__store_scaled_single)(const qc__rhs_block *B, int64_t begin, int64_t end) {
-    double scale[LANES];
-    for (int64_t k = begin; k < end; k += LANES) {
-        const int64_t count = end - k < LANES ? end - k : LANES;
-        inverse_roots(count, B->F->D + k, scale);
-        for (int64_t i = 0; i < count; i++)
-            for (int c = 0; c < NC; c++) B->x[NC * (k + i) + c] = scale[i] * B->Y[NC * (k + i) + c];
-    }
-}
-
-static inline void gather(int64_t begin, int64_t end, const int32_t *from, const double *x,
-                          double *y) {
-    for (int64_t k = begin; k < end; k++)
-        for (int c = 0; c < NC; c++) y[NC * k + c] = x[NC * (int64_t)from[k] + c];
-}
-
-void KERNEL(qc__load_single)(const qc__rhs_block *B, int64_t begin, int64_t end) {
-    gather(begin, end, B->F->S->perm, B->x, B->Y);
-}
-
-void KERNEL(qc__store_single)(const qc__rhs_block *B, int64_t begin, int64_t end) {
-    gather(begin, end, B->F->S->inverse, B->Y, B->x);
 }
