@@ -6,8 +6,8 @@
 
 #include "sdk/base/internal.h"
 
-/* One front of a modification (theory S.10 to S.13). Arrays count entries of NC doubles, except D,
- * diagonal, a, journal, multipliers (doubles). */
+/* One front of a modification (theory S.7, S.10, S.11). Arrays count entries of NC doubles, except
+ * D, diagonal, a, journal, multipliers (doubles). */
 typedef struct qc__update_front {
     int64_t r, w, k0;       /* rows, columns, first column which changes (w: none) */
     double *panel;          /* r x w */

@@ -1,5 +1,5 @@
 /* One front of the sweep for A + sum sigma_q w_q w_q^H and for the forward solution which goes with
- * it (theory S.7, S.10 to S.12). The columns go in blocks: the diagonal block gives the multipliers
+ * it (theory S.7, S.10, S.11). The columns go in blocks: the diagonal block gives the multipliers
  * of every column and vector; then the rows below are independent, and a tile of them keeps its
  * part of the vectors in registers through all columns of the block. Vectors go in pairs, so that
  * an entry of L is read and written once for two of them; further pairs find the tile in the
