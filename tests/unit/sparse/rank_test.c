@@ -114,11 +114,47 @@ static void arguments_are_checked(void **state) {
     qc_ctx_free(ctx);
 }
 
+static bool refuse(void *user, const char *stage, double fraction) {
+    (void)stage;
+    (void)fraction;
+    return !*(bool *)user;
+}
+
+static void cancelling_changes_nothing(void **state) {
+    (void)state;
+    enum { RANK = 40 };
+    bool stop = false;
+    qc_ctx_options options = QC_CTX_OPTIONS_INIT;
+    qc_ctx *ctx = NULL;
+    options.progress = refuse;
+    options.user = &stop;
+    assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
+    test_matrix M = make_matrix(DENSE, 350, 1);
+    qc_factor *F = factor_of(ctx, &M, NULL);
+    const uint64_t before = fingerprint(F);
+    int sigma[RANK];
+    int32_t start[RANK + 1], row[RANK];
+    qc_complex w[RANK];
+    for (int32_t q = 0; q < RANK; q++) {
+        sigma[q] = 1;
+        start[q] = row[q] = q;
+        w[q] = (qc_complex){1, 1};
+    }
+    start[RANK] = RANK;
+    stop = true;
+    assert_int_equal(qc_updown_many(ctx, F, RANK, sigma, start, row, w), QC_ERR_CANCELLED);
+    assert_true(before == fingerprint(F));
+    qc_factor_free(F);
+    free_matrix(&M);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(many_equal_refactorisation),
         cmocka_unit_test(updates_go_first),
         cmocka_unit_test(arguments_are_checked),
+        cmocka_unit_test(cancelling_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
