@@ -53,35 +53,46 @@ static void rewind_starts(int32_t n, int64_t *ptr) {
     ptr[0] = 0;
 }
 
-qc_status qc__permute_upper(qc_ctx *ctx, qc__pattern A, const int32_t *inverse, int64_t **colptr,
-                            int32_t **row) {
+qc_status qc__permute_upper_from(qc_ctx *ctx, qc__pattern A, const int32_t *inverse,
+                                 int64_t **colptr, int32_t **row, int64_t **source) {
     const int32_t n = A.n;
     int64_t *ptr = QC__ZERO(ctx, int64_t, n + 1);
     int32_t *out = QC__NEW(ctx, int32_t, A.colptr[n] - n);
-    if (!ptr || !out) {
+    int64_t *from = source ? QC__NEW(ctx, int64_t, A.colptr[n] - n) : NULL;
+    if (!ptr || !out || (source && !from)) {
         qc__free(ptr);
         qc__free(out);
+        qc__free(from);
         return QC_ERR_NOMEM;
     }
     for (int pass = 0; pass < 2; pass++) {
-        for (int32_t j = 0; j < n; j++)
-            for (int64_t p = A.colptr[j]; p < A.colptr[j + 1]; p++) {
-                const int32_t i = A.row[p], a = inverse[i], b = inverse[j];
-                if (i == j) continue;
-                if (pass == 0)
-                    ptr[a > b ? a : b]++;
-                else
-                    out[ptr[a > b ? a : b]++] = a < b ? a : b;
+        for (int32_t j = 0; j < n; j++) {
+            const int32_t b = inverse[j];
+            for (int64_t p = A.colptr[j]; p < A.colptr[j + 1] - 1;
+                 p++) { /* the last one is (j, j) */
+                const int32_t a = inverse[A.row[p]];
+                const int64_t q = ptr[a > b ? a : b]++;
+                if (pass == 0) continue;
+                out[q] = a < b ? a : b;
+                if (from) from[q] = a > b ? p : ~p;
             }
+        }
         if (pass == 0) cumulate(n, ptr);
     }
     rewind_starts(n, ptr);
     *colptr = ptr;
     *row = out;
+    if (source) *source = from;
     return QC_OK;
 }
 
-qc_status qc__transpose(qc_ctx *ctx, qc__pattern A, int64_t **colptr, int32_t **row) {
+qc_status qc__permute_upper(qc_ctx *ctx, qc__pattern A, const int32_t *inverse, int64_t **colptr,
+                            int32_t **row) {
+    return qc__permute_upper_from(ctx, A, inverse, colptr, row, NULL);
+}
+
+qc_status qc__transpose_renumbered(qc_ctx *ctx, qc__pattern A, const int32_t *order,
+                                   const int32_t *number, int64_t **colptr, int32_t **row) {
     const int32_t n = A.n;
     int64_t *ptr = QC__ZERO(ctx, int64_t, n + 1);
     int32_t *out = QC__NEW(ctx, int32_t, A.colptr[n]);
@@ -90,12 +101,19 @@ qc_status qc__transpose(qc_ctx *ctx, qc__pattern A, int64_t **colptr, int32_t **
         qc__free(out);
         return QC_ERR_NOMEM;
     }
-    for (int64_t p = 0; p < A.colptr[n]; p++) ptr[A.row[p]]++;
+    for (int64_t p = 0; p < A.colptr[n]; p++) ptr[number ? number[A.row[p]] : A.row[p]]++;
     cumulate(n, ptr);
-    for (int32_t j = 0; j < n; j++)
-        for (int64_t p = A.colptr[j]; p < A.colptr[j + 1]; p++) out[ptr[A.row[p]]++] = j;
+    for (int32_t k = 0; k < n; k++) {
+        const int32_t j = order ? order[k] : k;
+        for (int64_t p = A.colptr[j]; p < A.colptr[j + 1]; p++)
+            out[ptr[number ? number[A.row[p]] : A.row[p]]++] = k;
+    }
     rewind_starts(n, ptr);
     *colptr = ptr;
     *row = out;
     return QC_OK;
+}
+
+qc_status qc__transpose(qc_ctx *ctx, qc__pattern A, int64_t **colptr, int32_t **row) {
+    return qc__transpose_renumbered(ctx, A, NULL, NULL, colptr, row);
 }
