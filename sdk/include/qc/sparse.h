@@ -98,8 +98,9 @@ QC_API qc_status qc_refactorize_real(qc_ctx *ctx, qc_factor *F, const qc_symmetr
 QC_API void qc_factor_free(qc_factor *F);
 
 /* Solves A X = B in place. x: n x nrhs, column-major with leading dimension n. Several right-hand
- * sides are blocked. The real functions need a real factor, the complex ones a complex factor
- * (ARGUMENT otherwise). */
+ * sides are blocked: a column does not depend on the others, but alone it may differ in the last
+ * bits. The real functions need a real factor, the complex ones a complex factor. Errors: ARGUMENT,
+ * NOMEM, CANCELLED (between blocks, when x is partly solved). */
 QC_API qc_status qc_solve(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, qc_complex *x);
 QC_API qc_status qc_solve_real(qc_ctx *ctx, const qc_factor *F, int32_t nrhs, double *x);
 

@@ -1,5 +1,6 @@
 /* Residuals, blocks of right-hand sides, equal bits for any number of
  * threads, the forward identity, refinement. */
+#include <pthread.h>
 #include "support.h"
 
 static qc_complex *random_vectors(int64_t count) {
@@ -135,6 +136,50 @@ static void threads_change_no_bit(void **state) {
     free_matrix(&M);
 }
 
+typedef struct client {
+    const qc_factor *F;
+    qc_complex *x;
+    qc_status status;
+} client;
+
+static void *solve_many(void *arg) {
+    client *c = arg;
+    qc_ctx *ctx = NULL;
+    c->status = qc_ctx_create(NULL, &ctx);
+    for (int k = 0; k < 20 && c->status == QC_OK; k++)
+        c->status = qc_solve(ctx, c->F, k % 2 ? 1 : 3, c->x);
+    qc_ctx_free(ctx);
+    return NULL;
+}
+
+/* Solves keep nothing in the factor: threads which share one do not see each other. */
+static void threads_share_a_factor(void **state) {
+    (void)state;
+    enum { CLIENTS = 3 };
+    qc_ctx *ctx = new_ctx(1);
+    test_matrix M = make_matrix(GRID, 1600, 0.9);
+    const int64_t n = M.n;
+    client c[CLIENTS];
+    pthread_t thread[CLIENTS];
+    qc_factor *F = factor_of(ctx, &M, NULL);
+    qc_complex *b = random_vectors(3 * n);
+    for (int k = 0; k < CLIENTS; k++) {
+        c[k] = (client){F, random_vectors(3 * n), QC_OK};
+        memcpy(c[k].x, b, (size_t)(3 * n) * sizeof *b);
+        assert_int_equal(pthread_create(&thread[k], NULL, solve_many, &c[k]), 0);
+    }
+    for (int k = 0; k < CLIENTS; k++) {
+        pthread_join(thread[k], NULL);
+        assert_int_equal(c[k].status, QC_OK);
+        assert_memory_equal(c[k].x, c[0].x, (size_t)(3 * n) * sizeof *b);
+    }
+    for (int k = 0; k < CLIENTS; k++) free(c[k].x);
+    free(b);
+    qc_factor_free(F);
+    free_matrix(&M);
+    qc_ctx_free(ctx);
+}
+
 /* B^H A^{-1} C = Y_B^H Y_C (thesis 6.2.1) */
 static void forward_identity(void **state) {
     (void)state;
@@ -227,11 +272,9 @@ static void kinds_do_not_mix(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(complex_solves),
-        cmocka_unit_test(real_solves),
-        cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(forward_identity),
-        cmocka_unit_test(refinement_reaches_roundoff),
+        cmocka_unit_test(complex_solves),        cmocka_unit_test(real_solves),
+        cmocka_unit_test(threads_change_no_bit), cmocka_unit_test(threads_share_a_factor),
+        cmocka_unit_test(forward_identity),      cmocka_unit_test(refinement_reaches_roundoff),
         cmocka_unit_test(kinds_do_not_mix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
