@@ -20,6 +20,25 @@ static void *counting_resize(void *user, void *p, size_t old_size, size_t new_si
     return q;
 }
 
+/* A transaction with a forward solution; whatever fails, rolling back gives the bits of before. */
+static qc_status modify(qc_ctx *ctx, qc_factor *F, const int32_t row[2], const qc_complex w[2],
+                        const qc_complex *b) {
+    const uint64_t before = fingerprint(F);
+    const int sigma[3] = {1, -1, 1};
+    const int32_t start[4] = {0, 1, 1, 2};
+    double energy;
+    qc_status status = qc_forward_attach(ctx, F, b);
+    if (status == QC_OK) status = qc_factor_begin(ctx, F);
+    if (status != QC_OK) return status;
+    status = qc_forward_add(ctx, F, 2, row, w);
+    if (status == QC_OK) status = qc_forward_energy(ctx, F, &energy);
+    if (status == QC_OK) status = qc_updown_many(ctx, F, 3, sigma, start, row, w);
+    if (status == QC_OK) status = qc_updown(ctx, F, 1, 2, row, w);
+    assert_int_equal(qc_factor_rollback(ctx, F), QC_OK);
+    assert_true(before == fingerprint(F));
+    return status;
+}
+
 static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
     const qc_hermitian A = hermitian(M);
     qc_symbolic *S = NULL;
@@ -41,6 +60,7 @@ static qc_status run_complex(qc_ctx *ctx, const test_matrix *M) {
         status = qc_updown(ctx, F, 1, 2, row, w);
         if (status != QC_OK) assert_true(before == fingerprint(F));
     }
+    if (status == QC_OK) status = modify(ctx, F, row, w, x);
     if (status == QC_OK) status = qc_solve(ctx, F, 1, x);
     if (status == QC_OK) status = qc_solve(ctx, F, 12, x);
     if (status == QC_OK)
