@@ -96,19 +96,30 @@ QC__INLINE void update_tile(const tile *R, const int T, const bool part, const i
         for (int t = 0; t < T; t++) put(R->v[q], v_flush(v[q][t], tiny), t, T, part, last);
 }
 
-/* f_i -= l_i z */
+/* f_i -= l_i z; the products with real and with imaginary parts of z go into sums of their own. m:
+ * re, im by column. */
 QC__INLINE void solve_tile(const tile *R, const int T, const bool part) {
     const int64_t last = R->doubles - (T - 1) * LANES, ld = R->ld;
     const double *x = R->x, *m = R->m;
-    vec f[TILE];
-    for (int t = 0; t < T; t++) f[t] = get(R->v[0], t, T, part, last);
-    for (int64_t k = R->columns; k > 0; k--) {
-        const multiplier z = load(m);
-        for (int t = 0; t < T; t++) f[t] = subtract(f[t], z, get(x, t, T, part, last));
-        x += ld;
-        m += 3;
+    vec f[TILE], g[TILE];
+    for (int t = 0; t < T; t++) {
+        f[t] = get(R->v[0], t, T, part, last);
+        g[t] = v_zero();
     }
-    for (int t = 0; t < T; t++) put(R->v[0], f[t], t, T, part, last);
+    for (int64_t k = R->columns; k > 0; k--) {
+        const vec re = v_set(m[0]), im = v_set(m[1]);
+        for (int t = 0; t < T; t++) {
+            const vec l = get(x, t, T, part, last);
+            f[t] = v_fnma(re, l, f[t]);
+            if (NC == 2) g[t] = v_fma(im, l, g[t]);
+        }
+        x += ld;
+        m += 2;
+    }
+    for (int t = 0; t < T; t++) {
+        if (NC == 2) f[t] = v_fnma(v_set(1), v_times_i(g[t]), f[t]);
+        put(R->v[0], f[t], t, T, part, last);
+    }
 }
 
 QC__INLINE void restore_tile(const tile *R, const double *journal, const int T, const bool part) {
@@ -254,13 +265,14 @@ QC__INLINE void solve_block(const qc__update_front *f, int64_t begin, int64_t en
         for (int64_t lane = 0; lane < lanes; lane += NC) {
             const vec re = v_spread(y[t], (int)lane);
             const vec im = NC == 2 ? v_spread(y[t], (int)lane + 1) : v_zero();
-            set(m, v_first(re), v_first(im));
+            m[0] = v_first(re);
+            m[1] = v_first(im);
             for (int g = t; g < G; g++) {
                 const vec l = get(x, g, G, true, last);
                 y[g] = subtract_product(y[g], re, im, g == t ? v_join(v_zero(), l, lane + NC) : l);
             }
             x += NC * f->r;
-            m += 3;
+            m += 2;
         }
     }
     for (int g = 0; g < G; g++) put(solution, y[g], g, G, true, last);
@@ -332,28 +344,29 @@ static void solve_any(const qc__update_front *f, int64_t k, int64_t end, double 
     }
 }
 
-/* All rows below the block [begin, end). */
-static void rows_below(qc__update_front *f, int64_t begin, int64_t end, int32_t vectors,
-                       const double *z) {
-    const int64_t columns = end - begin, below = NC * (f->r - end);
+/* All rows below the block [begin, end), of which the columns from `changed` on are updated. */
+static void rows_below(qc__update_front *f, int64_t begin, int64_t changed, int64_t end,
+                       int32_t vectors, const double *z) {
+    const int64_t below = NC * (f->r - end), ld = NC * f->r;
     for (int64_t i = 0; i < below;) {
         const int64_t doubles = tile_size(below - i), row = NC * end + i;
-        tile R = {f->panel + NC * begin * f->r + row,
-                  NC * f->r,
-                  columns,
-                  doubles,
-                  f->multipliers,
-                  {NULL, NULL},
-                  f->journal,
-                  f->negligible};
+        tile R = {.x = vectors > 0 ? f->panel + changed * ld + row : NULL,
+                  .ld = ld,
+                  .columns = end - changed,
+                  .doubles = doubles,
+                  .m = f->multipliers,
+                  .journal = f->journal,
+                  .negligible = f->negligible};
         for (int32_t q = 0; q < vectors; q += 2) {
             const int V = q + 1 < vectors ? 2 : 1;
             for (int j = 0; j < V; j++) R.v[j] = f->vector[q + j] + row;
             update_rows(&R, V, q == 0);
             R.m += STEP * V * BLOCK;
         }
-        if (vectors > 0) f->journal += tile_journal(doubles, columns);
+        if (vectors > 0) f->journal += tile_journal(doubles, end - changed);
         if (f->solution) {
+            R.x = f->panel + begin * ld + row;
+            R.columns = end - begin;
             R.v[0] = f->solution + row;
             R.m = z;
             solve_rows(&R);
@@ -362,23 +375,29 @@ static void rows_below(qc__update_front *f, int64_t begin, int64_t end, int32_t 
     }
 }
 
+/* The blocks begin at multiples of BLOCK whatever the first changed column is, so that the forward
+ * solution always takes the same operations. */
+static inline int64_t block_end(int64_t k, int64_t w) {
+    const int64_t end = (k / BLOCK + 1) * BLOCK;
+    return end < w ? end : w;
+}
+
 int32_t KERNEL(qc__update_front)(qc__update_front *f) {
-    double z[3 * BLOCK];
-    for (int64_t k = f->solution ? 0 : f->k0; k < f->w;) {
-        const int64_t limit = k < f->k0 ? f->k0 : f->w;
-        const int64_t end = limit - k < BLOCK ? limit : k + BLOCK;
-        const int32_t vectors = k < f->k0 ? 0 : f->vectors;
+    double z[2 * BLOCK];
+    for (int64_t k = f->solution ? 0 : f->k0 / BLOCK * BLOCK; k < f->w;) {
+        const int64_t end = block_end(k, f->w), changed = k < f->k0 ? f->k0 : k;
+        const int32_t vectors = changed < end ? f->vectors : 0;
         double *old = f->journal;
-        if (vectors > 0) f->journal += block_journal(end - k);
+        if (vectors > 0) f->journal += block_journal(end - changed);
         for (int32_t q = 0; q < vectors; q++) {
             const int32_t pair = q / 2 * 2, V = pair + 1 < vectors ? 2 : 1;
             double *m = f->multipliers + STEP * (BLOCK * pair + q % 2);
-            const int32_t bad = update_any(f, k, end, q, m, STEP * V, q ? NULL : old);
-            if (bad >= 0 && q == 0) save_rest(f, k, bad, end, old);
+            const int32_t bad = update_any(f, changed, end, q, m, STEP * V, q ? NULL : old);
+            if (bad >= 0 && q == 0) save_rest(f, changed, bad, end, old);
             if (bad >= 0) return bad;
         }
         if (f->solution) solve_any(f, k, end, z);
-        rows_below(f, k, end, vectors, z);
+        rows_below(f, k, changed, end, vectors, z);
         k = end;
     }
     return -1;
@@ -387,7 +406,7 @@ int32_t KERNEL(qc__update_front)(qc__update_front *f) {
 void KERNEL(qc__restore_front)(int64_t r, int64_t w, int64_t k0, double *panel,
                                const double *journal, const double *stop) {
     for (int64_t k = k0; k < w && journal < stop;) {
-        const int64_t end = w - k < BLOCK ? w : k + BLOCK;
+        const int64_t end = block_end(k, w);
         journal = restore_block(panel, r, k, end, journal);
         for (int64_t i = NC * end; i < NC * r && journal < stop;) {
             const int64_t n = tile_size(NC * r - i);
