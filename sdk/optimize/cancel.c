@@ -123,6 +123,7 @@ static int by_change(const void *a, const void *b) {
 }
 
 static qc_status cancel(qc_ctx *ctx, search *s, int32_t *cancelled) {
+    if (s->n_pairs == 0) return QC_OK;
     qsort(s->pair, (size_t)s->n_pairs, sizeof *s->pair, by_change);
     for (int64_t i = 0; i < s->n_pairs; i++) {
         const pair *a = &s->pair[i];

@@ -9,7 +9,6 @@ static const double DRIFT = 1e-11;
 static bool allocate(qc_ctx *ctx, qc_distortion *d) {
     const size_t F = (size_t)d->mesh->n_faces, E = (size_t)d->mesh->n_edges;
     d->cotangent = QC__NEW(ctx, double, 3 * F);
-    d->side = QC__NEW(ctx, qc_complex, 3 * F);
     d->m = QC__NEW(ctx, int8_t, E);
     d->index4 = QC__NEW(ctx, int32_t, d->mesh->n_vertices);
     d->bend = QC__ZERO(ctx, double, F);
@@ -18,17 +17,22 @@ static bool allocate(qc_ctx *ctx, qc_distortion *d) {
     d->angle = QC__NEW(ctx, double, F *QC__TRIALS);
     d->turned = QC__NEW(ctx, qc_complex, F * QC__TRIALS);
     d->frozen = QC__ZERO(ctx, uint8_t, d->mesh->n_components);
-    return d->frozen && d->cotangent && d->side && d->m && d->index4 && d->bend && d->alpha &&
-           d->x && d->angle && d->turned;
+    return d->frozen && d->cotangent && d->m && d->index4 && d->bend && d->alpha && d->x &&
+           d->angle && d->turned;
 }
 
 static bool allocate_unknowns(qc_ctx *ctx, qc_distortion *d) {
     const size_t n = (size_t)d->n;
+    d->side = QC__NEW(ctx, qc__side, n);
     d->r = QC__NEW(ctx, qc_complex, n);
     d->curl = QC__NEW(ctx, qc_complex, n * QC__TRIALS);
     d->reach = QC__NEW(ctx, int32_t, 2 * n);
     d->sparse = QC__NEW(ctx, qc_complex, 2 * n);
-    return d->r && d->curl && d->reach && d->sparse;
+    return d->side && d->r && d->curl && d->reach && d->sparse;
+}
+
+static double length_in(const qc_sizing *sizing, int32_t t) {
+    return !sizing ? 1 : sizing->length ? sizing->length[t] : sizing->edge_length;
 }
 
 static void copy_start(qc_distortion *d, const qc_sizing *sizing) {
@@ -38,13 +42,21 @@ static void copy_start(qc_distortion *d, const qc_sizing *sizing) {
     memcpy(d->x, d->start->field->x, (size_t)mesh->n_faces * sizeof *d->x);
     d->branch_points = d->start->n_singular;
     d->whole = 0;
-    for (int32_t t = 0; t < mesh->n_faces; t++) {
-        const double length = !sizing          ? 1
-                              : sizing->length ? sizing->length[t]
-                                               : sizing->edge_length;
-        for (int32_t h = 3 * t; h < 3 * t + 3; h++)
-            d->side[h] = qc__z(qc__c(d->smoother.c.edge[h]) / length);
-        d->whole += d->smoother.c.area[t] / (length * length);
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        d->whole += d->smoother.c.area[t] / (length_in(sizing, t) * length_in(sizing, t));
+}
+
+static void fill_sides(qc_distortion *d, const qc_sizing *sizing) {
+    const qc_mesh *mesh = d->mesh;
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        const int32_t i = d->matrix->unknown[e], h = mesh->edge_halfedge[2 * e];
+        const int32_t g = mesh->edge_halfedge[2 * e + 1];
+        if (i < 0) continue;
+        const qc__side side = {
+            h / 3, g / 3, qc__z(qc__c(d->smoother.c.edge[h]) / length_in(sizing, h / 3)),
+            qc_quarter_turn(qc__z(qc__c(d->smoother.c.edge[g]) / length_in(sizing, g / 3)),
+                            d->m[e])};
+        d->side[i] = side;
     }
 }
 
@@ -84,6 +96,7 @@ static qc_status prepare(qc_ctx *ctx, qc_distortion *d, const qc_sizing *sizing,
     copy_start(d, sizing);
     if (d->n == 0) return QC_OK;
     if (!allocate_unknowns(ctx, d)) return QC_ERR_NOMEM;
+    fill_sides(d, sizing);
     return factorise(ctx, d);
 }
 

@@ -7,28 +7,23 @@
 static inline void sine_cosine(double angle, double *s, double *c) {
     const double turn = angle * (0.5 / QC__PI);
     const double q = 0.25 * (angle - 2 * QC__PI * (double)(int32_t)turn), z = q * q;
-    const double sine =
-        q *
-        (1 -
-         z / 6 *
-             (1 -
-              z / 20 *
-                  (1 - z / 42 *
-                           (1 - z / 72 *
-                                    (1 - z / 110 *
-                                             (1 - z / 156 *
-                                                      (1 - z / 210 *
-                                                               (1 - z / 272 * (1 - z / 342)))))))));
-    const double rest = /* 1 - cos */
-        z / 2 *
-        (1 -
-         z / 12 *
-             (1 - z / 30 *
-                      (1 - z / 56 *
-                               (1 - z / 90 *
-                                        (1 - z / 132 *
-                                                 (1 - z / 182 * (1 - z / 240 * (1 - z / 306))))))));
-    const double s2 = 2 * sine * (1 - rest), r2 = 2 * sine * sine;
+    double a = 1 - z * (1.0 / 342), b = 1 - z * (1.0 / 306); /* sin q = q a, 1 - cos q = z b / 2 */
+    a = 1 - z * (1.0 / 272) * a;
+    b = 1 - z * (1.0 / 240) * b;
+    a = 1 - z * (1.0 / 210) * a;
+    b = 1 - z * (1.0 / 182) * b;
+    a = 1 - z * (1.0 / 156) * a;
+    b = 1 - z * (1.0 / 132) * b;
+    a = 1 - z * (1.0 / 110) * a;
+    b = 1 - z * (1.0 / 90) * b;
+    a = 1 - z * (1.0 / 72) * a;
+    b = 1 - z * (1.0 / 56) * b;
+    a = 1 - z * (1.0 / 42) * a;
+    b = 1 - z * (1.0 / 30) * b;
+    a = 1 - z * (1.0 / 20) * a;
+    b = 1 - z * (1.0 / 12) * b;
+    a = 1 - z * (1.0 / 6) * a;
+    const double sine = q * a, s2 = 2 * sine * (1 - 0.5 * z * b), r2 = 2 * sine * sine;
     *s = 2 * s2 * (1 - r2);
     *c = 1 - 2 * s2 * s2;
 }
@@ -43,23 +38,24 @@ void qc__rotate_field(int32_t n, const double *angle, const qc_complex *x, qc_co
     }
 }
 
-/* conj(x) e. */
-static inline qc_complex value(qc_complex x, qc_complex e) {
-    const qc_complex z = {x.re * e.re + x.im * e.im, x.re * e.im - x.im * e.re};
-    return z;
+static inline qc_complex curl_at(const qc__side *e, const qc_complex *x) {
+    const qc_complex s = x[e->s], t = x[e->t], a = e->in_s, b = e->in_t;
+    const qc_complex r = {(s.re * a.re + s.im * a.im) + (t.re * b.re + t.im * b.im),
+                          (s.re * a.im - s.im * a.re) + (t.re * b.im - t.im * b.re)};
+    return r;
+}
+
+qc_complex qc__flip_side(const qc_distortion *d, qc_flip_step flip) {
+    return qc_quarter_turn(d->side[d->matrix->unknown[flip.edge]].in_t, flip.step);
 }
 
 void qc__weak_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step flip, qc_complex *r) {
-    const int32_t *halfedge = d->mesh->edge_halfedge, *unknown = d->matrix->unknown;
-    for (int32_t e = 0; e < d->mesh->n_edges; e++) {
-        if (unknown[e] < 0) continue;
-        const int32_t h = halfedge[2 * e], g = halfedge[2 * e + 1];
-        const int32_t m = d->m[e] + (e == flip.edge ? flip.step : 0);
-        const qc_complex s = value(x[h / 3], d->side[h]);
-        const qc_complex t = qc_quarter_turn(value(x[g / 3], d->side[g]), m);
-        r[unknown[e]].re = s.re + t.re;
-        r[unknown[e]].im = s.im + t.im;
-    }
+    for (int32_t i = 0; i < d->n; i++) r[i] = curl_at(&d->side[i], x);
+    if (flip.edge < 0) return;
+    const int32_t i = d->matrix->unknown[flip.edge];
+    qc__side changed = d->side[i];
+    changed.in_t = qc__flip_side(d, flip);
+    r[i] = curl_at(&changed, x);
 }
 
 bool qc__face_is_fixed(const qc_distortion *d, int32_t t) {

@@ -6,6 +6,13 @@
 
 #include "sdk/field/internal.h"
 
+/* What the weak curl at an edge needs: its faces, and its vector in each, divided by the length
+ * there; that of t times i^m, so that r_e = conj(x_s) in_s + conj(x_t) in_t. */
+typedef struct qc__side {
+    int32_t s, t;
+    qc_complex in_s, in_t;
+} qc__side;
+
 /* Flips evaluated at a time: right-hand sides which share a pass over the factors. */
 enum { QC__TRIALS = 8 };
 
@@ -14,7 +21,7 @@ struct qc_distortion {
     const qc_mesh *mesh;
     qc__smoother smoother;
     double *cotangent;    /* 3 n_faces                                                         */
-    qc_complex *side;     /* 3 n_faces: e_tk / length of the face                              */
+    qc__side *side;       /* n: the two sides of the edge of each unknown */
     int8_t *m;            /* n_edges                                                           */
     int32_t *index4;      /* n_vertices                                                        */
     double *bend;         /* n_faces: right-hand side of the smoothing since the start         */
@@ -46,8 +53,11 @@ qc__coupling qc__flip_coupling(const qc_distortion *d, qc_flip_step flip);
 
 /* out_t = x_t exp(i angle_t); may be in place. */
 void qc__rotate_field(int32_t n, const double *angle, const qc_complex *x, qc_complex *out);
-/* Weak curl of the field x for the matching of d, by unknown; edge -1 or with m += step there. */
+/* Weak curl of the field x for the matching of d, by unknown; with m += step at the edge of flip if
+ * that is not -1. */
 void qc__weak_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step flip, qc_complex *r);
+/* The side in t of the edge of the flip after m += step. */
+qc_complex qc__flip_side(const qc_distortion *d, qc_flip_step flip);
 /* The right-hand side of the smoothing changes by +-value at the two faces of the edge. */
 double qc__flip_bend(const qc_distortion *d, qc_flip_step flip, int32_t *s, int32_t *t);
 bool qc__face_is_fixed(const qc_distortion *d, int32_t t);
