@@ -65,6 +65,19 @@ bool qc__face_is_fixed(const qc_distortion *d, int32_t t);
 qc_status qc__refresh_factor(qc_ctx *ctx, qc_distortion *d);
 qc_status qc__check_flips(qc_ctx *ctx, const qc_distortion *d, int32_t n, const qc_flip_step *flip);
 
+/* --- prediction ------------------------------------------------------------------------------- */
+
+/* The change of E_D is about first + c self with c near 1. */
+typedef struct qc__prediction {
+    double first; /* at the present potential, a lower bound */
+    double self;  /* the energy of what the flip adds, near the edge */
+} qc__prediction;
+/* slope: n_faces, from qc__prepare_slope; v: n, L* v = r. Any thread. */
+qc_status qc__prepare_slope(qc_ctx *ctx, const qc_distortion *d, const qc_complex *v,
+                            double *slope);
+qc__prediction qc__predict(const qc_distortion *d, const qc_complex *v, const double *slope,
+                           qc_flip_step flip);
+
 /* --- which flips may be made ------------------------------------------------------------------ */
 
 typedef struct qc__rules {
@@ -74,5 +87,8 @@ typedef struct qc__rules {
 /* Whether the flip keeps the rules at the present state: number and indices of branch points, and
  * their distance. */
 bool qc__flip_allowed(const qc_distortion *d, const qc__rules *rules, qc_flip_step flip);
+
+/* How many branch points more there are after the flip, -2 to 2. */
+int32_t qc__new_branch_points(const qc_distortion *d, qc_flip_step flip);
 
 #endif

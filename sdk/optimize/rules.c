@@ -40,16 +40,27 @@ static bool is_free(const qc_distortion *d, double spacing, int32_t p, int32_t e
     return true;
 }
 
+int32_t qc__new_branch_points(const qc_distortion *d, qc_flip_step flip) {
+    const int32_t h = d->mesh->edge_halfedge[2 * flip.edge];
+    const int32_t p[2] = {qc_halfedge_start(d->mesh, h), qc_halfedge_end(d->mesh, h)};
+    int32_t more = 0;
+    for (int i = 0; i < 2; i++) {
+        if (qc_vertex_on_boundary(d->mesh, p[i])) continue;
+        const int32_t old = d->index4[p[i]];
+        more += (old + (i == 0 ? flip.step : -flip.step) != 0) - (old != 0);
+    }
+    return more;
+}
+
 bool qc__flip_allowed(const qc_distortion *d, const qc__rules *rules, qc_flip_step flip) {
     const int32_t h = d->mesh->edge_halfedge[2 * flip.edge];
     const int32_t p[2] = {qc_halfedge_start(d->mesh, h), qc_halfedge_end(d->mesh, h)};
     const int32_t step[2] = {flip.step, -flip.step};
-    int32_t more = 0;
+    const int32_t more = qc__new_branch_points(d, flip);
     for (int i = 0; i < 2; i++) {
-        if (qc_vertex_on_boundary(d->mesh, p[i])) continue;
-        const int32_t old = d->index4[p[i]], new = old + step[i];
-        if (!index_allowed(old, new)) return false;
-        more += (new != 0) - (old != 0);
+        const int32_t old = d->index4[p[i]];
+        if (!qc_vertex_on_boundary(d->mesh, p[i]) && !index_allowed(old, old + step[i]))
+            return false;
     }
     if (!rules->create && more > 0) return false;
     if (!(rules->spacing > 0) || more != 0) return true;

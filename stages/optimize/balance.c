@@ -2,22 +2,24 @@
 #include "stages/optimize/common.h"
 
 typedef struct params {
-    double lambda, pair_cost, spacing;
+    double lambda, pair_cost, spacing, gain;
     int64_t neighbours, rounds, evaluations;
 } params;
 
 QC__OPTIMIZE_PORTS
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, lambda, 0.5, 0, 1, "", QC__LAMBDA_DOC),
+    QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "", QC__LAMBDA_DOC),
     QC_PARAM_REAL(params, pair_cost, 0.5, 0, 1e6, "quad area",
                   "expected fall of the rounding error E_H when a pair is cancelled"),
     QC_PARAM_REAL(params, spacing, 1, 0, 100, "quad",
                   "pairs nearer than this are cancelled at any price; the others do not move "
                   "nearer than this"),
+    QC_PARAM_REAL(params, gain, 0.03, 0, 1e6, "quad area",
+                  "smallest fall of E_D for which a branch point is moved"),
     QC_PARAM_INT(params, neighbours, 3, 1, 100, "",
                  "nearest branch points of opposite sign which are tried for each one"),
     QC_PARAM_INT(params, rounds, 8, 1, 1000, "", "of cancelling and moving, at most"),
-    QC_PARAM_INT(params, evaluations, 2000, 0, 1e9, "",
+    QC_PARAM_INT(params, evaluations, 1000, 0, 1e9, "",
                  "of E_D for moving, at most, in each round"),
 };
 
@@ -32,6 +34,7 @@ static qc_status balance(const qc_run *r, const params *p, qc_distortion *d) {
     qc_reduce_options move = QC_REDUCE_OPTIONS_INIT;
     move.evaluations = p->evaluations;
     move.spacing = cancel.spacing;
+    move.gain = p->gain;
     for (int64_t i = 0; i < p->rounds; i++) {
         int32_t cancelled = 0;
         qc_status status = qc_distortion_cancel(r->ctx, d, &cancel, &cancelled);

@@ -8,7 +8,7 @@ typedef struct params {
 
 QC__OPTIMIZE_PORTS
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, lambda, 0.5, 0, 1, "", QC__LAMBDA_DOC),
+    QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "", QC__LAMBDA_DOC),
     QC_PARAM_INT(params, neighbours, 3, 1, 100, "",
                  "nearest branch points of opposite sign which are tried for each one"),
     QC_PARAM_REAL(params, spacing, 0, 0, 100, "quad",

@@ -16,8 +16,8 @@
     };
 
 #define QC__LAMBDA_DOC                                                                             \
-    "weight of smoothness against alignment in the field that follows the matching; as in "        \
-    "qc.field.smooth"
+    "smoothness against alignment, as in qc.field.smooth, for what the field changes as the "      \
+    "branch points move; 0 keeps the trusted directions"
 
 /* The distortion at the input matching. */
 qc_status qc__optimize_begin(const qc_run *run, double lambda, qc_distortion **out);

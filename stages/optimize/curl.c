@@ -9,15 +9,15 @@ typedef struct params {
 
 QC__OPTIMIZE_PORTS
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, lambda, 0.5, 0, 1, "", QC__LAMBDA_DOC),
+    QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "", QC__LAMBDA_DOC),
     QC_PARAM_BOOL(params, create, false,
                   "new pairs of branch points may appear; off: they move and cancel only"),
     QC_PARAM_REAL(params, spacing, 1, 0, 100, "quad",
                   "branch points do not move nearer to each other than this"),
-    QC_PARAM_REAL(params, gain, 0, 0, 1e6, "quad area",
+    QC_PARAM_REAL(params, gain, 0.03, 0, 1e6, "quad area",
                   "smallest fall of E_D for which a flip is made"),
     QC_PARAM_INT(params, evaluations, 20000, 0, 1e9, "", "of E_D, at most"),
-    QC_PARAM_INT(params, patience, 400, 1, 1e9, "",
+    QC_PARAM_INT(params, patience, 96, 1, 1e9, "",
                  "ends after so many trials in a row without gain"),
 };
 

@@ -78,10 +78,11 @@ typedef struct qc_reduce_options {
     double gain;    /* smallest gain of a flip that counts, in parameter units (as E_D)         */
 } qc_reduce_options;
 #define QC_REDUCE_OPTIONS_INIT                                                                     \
-    { sizeof(qc_reduce_options), 0, 20000, 400, 0.0, 0.0 }
+    { sizeof(qc_reduce_options), 0, 20000, 96, 0.0, 0.0 }
 
-/* Flips the edges of largest share as long as E_D falls; every flip that stays was verified by an
- * exact evaluation. Indices stay within -2/4 and 1/4 where they are. Deterministic. CANCELLED: the
+/* Flips edges of large share, best predictions first, as long as E_D falls; every flip that stays
+ * was verified by an exact evaluation. With `create` branch points are moved before new ones are
+ * made. Indices stay within -2/4 and 1/4 where they are. Deterministic. CANCELLED: the
  * distortion is valid and the best so far. Errors: NOMEM, CANCELLED. */
 QC_API qc_status qc_distortion_reduce(qc_ctx *ctx, qc_distortion *distortion,
                                       const qc_reduce_options *options);
