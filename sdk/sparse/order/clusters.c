@@ -7,6 +7,7 @@ static int32_t append_neighbours(const qc__cover *C, int32_t u, int32_t cluster,
                                  int32_t count, int32_t most) {
     for (int32_t p = C->element[u].begin; p < C->element[u].active; p++) {
         const qc__net net = C->net[C->entry[p]];
+        if (net.end - net.begin > QC__WIDE_NET) continue;
         for (int32_t q = net.begin; q < net.end && count < most; q++) {
             const int32_t v = C->element_of[q];
             if (C->element[v].cluster != -1) continue;

@@ -6,7 +6,7 @@
 #include "sdk/sparse/order/internal.h"
 #include <string.h>
 
-enum { LEAF = 128, CLUSTER = 16, TASK = 6000, BATCH = 32 };
+enum { LEAF = 128, CLUSTER = 16, TASK = 6000, BATCH = 32, DENSE = 128 };
 
 typedef struct task {
     qc__piece piece, child[2]; /* children without rows do not exist */
@@ -143,10 +143,10 @@ static void release(qc__dissection *D) {
 
 /* Rows in very many elements come last, since hardly any bisection spares them; rows in none, which
  * have no neighbours, before these. */
-static qc__piece prepare(const qc__dissection *D, int32_t *clusters) {
+static qc_status prepare(qc_ctx *ctx, qc__dissection *D, const double *position, qc__piece *root) {
     qc__cover C = D->buffer[0];
     int32_t size[3] = {0, 0, 0}, isolated = 0;
-    const double dense = 16 + 10 * sqrt((double)C.n);
+    const double dense = fmin(16 + 10 * sqrt((double)C.n), DENSE);
     for (int32_t r = 0; r < C.n; r++) {
         const int32_t count = C.net[r].end - C.net[r].begin;
         D->work.flow[r] = count > dense ? QC__FREE : QC__SOURCE;
@@ -154,12 +154,19 @@ static qc__piece prepare(const qc__dissection *D, int32_t *clusters) {
     }
     for (int32_t r = 0; r < C.n; r++)
         if (C.net[r].end == C.net[r].begin) D->perm[size[QC__SOURCE] + isolated++] = r;
-    qc__piece child[2];
+    const int32_t clusters = qc__cluster_elements(&C, CLUSTER, D->work.list);
+    if (!qc__progress(ctx, 0.12)) return QC_ERR_CANCELLED;
+    if (position) {
+        D->center = QC__NEW(ctx, int16_t, 3 * (int64_t)clusters);
+        if (!D->center || !qc__cluster_centers(ctx, &C, clusters, position, D->center))
+            return QC_ERR_NOMEM;
+    }
     const qc__piece all = {0, C.m, C.n, 0, 0, 0, 0};
-    *clusters = qc__cluster_elements(&C, CLUSTER, D->work.list);
+    qc__piece child[2];
     memset(D->work.side, QC__SOURCE, (size_t)C.m);
     qc__piece_split(D, &all, D->work.list, size, child);
-    return child[0];
+    *root = child[0];
+    return qc__progress(ctx, 0.15) ? QC_OK : QC_ERR_CANCELLED;
 }
 
 static qc_status order_left(qc_ctx *ctx, qc__pattern A, const qc__dissection *D) {
@@ -185,15 +192,8 @@ qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const double *positio
     if (status == QC_OK && D.buffer[0].m == 0) { /* a diagonal matrix */
         for (int32_t k = 0; k < A.n; k++) perm[k] = k;
     } else if (status == QC_OK) {
-        int32_t clusters = 0;
-        qc__piece root = {0};
-        status = allocate(ctx, &D) ? QC_OK : QC_ERR_NOMEM;
-        if (status == QC_OK) root = prepare(&D, &clusters);
-        if (status == QC_OK && position) {
-            D.center = QC__NEW(ctx, int16_t, 3 * (int64_t)clusters);
-            if (!D.center || !qc__cluster_centers(ctx, &D.buffer[0], clusters, position, D.center))
-                status = QC_ERR_NOMEM;
-        }
+        qc__piece root;
+        status = allocate(ctx, &D) ? prepare(ctx, &D, position, &root) : QC_ERR_NOMEM;
         if (status == QC_OK) status = run(ctx, &D, root);
         if (status == QC_OK) status = order_left(ctx, A, &D);
     }

@@ -3,7 +3,7 @@
 #include "sdk/sparse/order/internal.h"
 #include <string.h>
 
-enum { WIDE_NET = 8, CLUSTER = 8 };
+enum { CLUSTER = 8 };
 
 static int32_t *take(qc__heap *heap, int64_t count) {
     if (heap->free < count) return NULL;
@@ -84,7 +84,7 @@ bool qc__graph_of_clusters(const qc__cover *C, const int16_t *center, qc__heap *
         G->size[k]++;
         for (int32_t p = C->element[e].begin; p < C->element[e].active; p++) {
             const qc__net net = C->net[C->entry[p]];
-            if (net.end - net.begin > WIDE_NET) continue;
+            if (net.end - net.begin > QC__WIDE_NET) continue;
             for (int32_t q = net.begin; q < net.end; q++) {
                 const int32_t j = of[C->element_of[q]];
                 if (j != k && !add_arc(G, k, j, 1)) return false;

@@ -44,6 +44,9 @@ enum { QC__SOURCE, QC__SINK, QC__FREE };
 qc_status qc__cover_create(qc_ctx *ctx, qc__pattern A, qc__cover *out);
 void qc__cover_free(qc__cover *cover);
 
+/* Nets of more elements join nothing where clusters are made and graphs of them. */
+enum { QC__WIDE_NET = 16 };
+
 /* clusters.c: sets the clusters of all elements; order: m, elements by cluster.
  * Returns their number. */
 int32_t qc__cluster_elements(qc__cover *C, int32_t size, int32_t *order);
