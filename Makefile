@@ -30,7 +30,7 @@ check: build check-format
 	cd build-tsan && ctest -R '^unit/(base|sparse|pipeline|field)' -j $(JOBS) --output-on-failure
 	cd build && ctest -j $(JOBS) --output-on-failure
 
-# The sparse factorisation against its peers (docs/performance.md is rewritten). About ten minutes; needs the
+# The sparse factorisation against its peers (docs/performance.md is rewritten). A quarter of an hour; needs the
 # meshes of QC_TEST_DATA and an otherwise idle machine.
 bench: build
 	sh tests/bench/sparse/page.sh build/bin/bench_sparse docs/performance.md --json build/bench_sparse.json
