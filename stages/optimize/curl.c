@@ -2,7 +2,7 @@
 #include "stages/optimize/common.h"
 
 typedef struct params {
-    double lambda, spacing, gain;
+    double lambda, spacing, gain, seconds;
     int64_t evaluations, patience;
     bool create;
 } params;
@@ -17,6 +17,9 @@ static const qc_param table[] = {
     QC_PARAM_REAL(params, gain, 0.03, 0, 1e6, "quad area",
                   "smallest fall of E_D for which a flip is made"),
     QC_PARAM_INT(params, evaluations, 20000, 0, 1e9, "", "of E_D, at most"),
+    QC_PARAM_REAL(params, seconds, 0, 0, 1e9, "s",
+                  "ends with what there is after this time; 0 = none. The result then depends on "
+                  "the machine"),
     QC_PARAM_INT(params, patience, 96, 1, 1e9, "",
                  "ends after so many trials in a row without gain"),
 };
@@ -32,6 +35,7 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.gain = p->gain;
     options.evaluations = p->evaluations;
     options.patience = p->patience;
+    options.seconds = p->seconds;
     status = qc_distortion_reduce(r->ctx, d, &options);
     return qc__optimize_end(r, status, d);
 }

@@ -76,9 +76,11 @@ typedef struct qc_reduce_options {
     double spacing; /* branch points do not move nearer to each other than this, in units of the
                        mesh; 0 = any distance                                                   */
     double gain;    /* smallest gain of a flip that counts, in parameter units (as E_D)         */
+    double seconds; /* ends with what there is after this time; 0 = none. The result then depends
+                       on the speed of the machine                                              */
 } qc_reduce_options;
 #define QC_REDUCE_OPTIONS_INIT                                                                     \
-    { sizeof(qc_reduce_options), 0, 20000, 96, 0.0, 0.0 }
+    { sizeof(qc_reduce_options), 0, 20000, 96, 0.0, 0.0, 0.0 }
 
 /* Flips edges of large share, best predictions first, as long as E_D falls; every flip that stays
  * was verified by an exact evaluation. With `create` branch points are moved before new ones are
