@@ -25,6 +25,9 @@ static void forget_around(qc__search *s, int32_t e) {
     }
 }
 
+/* Share of the field below which E_D is rounding. */
+static const double NOTHING = 1e-12;
+
 static double least_gain(const qc__search *s) {
     return fmax(s->options.gain, 1e-9 * s->d->energy);
 }
@@ -197,7 +200,7 @@ qc_status qc_distortion_reduce(qc_ctx *ctx, qc_distortion *d, const qc_reduce_op
         memcpy(&s.options, options,
                options->struct_size < sizeof s.options ? options->struct_size : sizeof s.options);
     s.rules = (qc__rules){false, s.options.spacing};
-    if (d->n == 0) return QC_OK;
+    if (d->n == 0 || !(d->energy > NOTHING * d->whole)) return QC_OK;
     const double before = d->energy;
     const int32_t points = d->branch_points;
     qc_status status = allocate(ctx, &s) ? run(ctx, &s) : QC_ERR_NOMEM;
