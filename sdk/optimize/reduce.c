@@ -109,6 +109,14 @@ static qc_status try_some(qc_ctx *ctx, qc__search *s, const qc__candidate *pool,
     return status;
 }
 
+/* Share of the budget which is used up, evaluations or seconds. */
+static double used(const qc__search *s) {
+    const double evaluations =
+        (double)(s->d->evaluations - s->first) / fmax((double)s->options.evaluations, 1);
+    const double limit = s->options.seconds;
+    return limit > 0 ? fmax(evaluations, (qc__now() - s->start) / limit) : evaluations;
+}
+
 /* Sorts once and tries from the top until something pays. *ended: nothing is left to try. */
 static qc_status round_of_trials(qc_ctx *ctx, qc__search *s, bool *applied, bool *ended) {
     qc__candidate gain[QC__TRIALS];
@@ -123,17 +131,10 @@ static qc_status round_of_trials(qc_ctx *ctx, qc__search *s, bool *applied, bool
         status = try_some(ctx, s, s->pool + i, k, gain, &n_gain);
         if (!status && n_gain > 0) status = apply(ctx, s, gain, n_gain, applied);
         s->failures += k;
+        if (!status && !*applied && !qc__progress(ctx, fmin(used(s), 1))) status = QC_ERR_CANCELLED;
     }
     if (*applied) s->failures = 0;
     return status;
-}
-
-/* Share of the budget which is used up, evaluations or seconds. */
-static double used(const qc__search *s) {
-    const double evaluations =
-        (double)(s->d->evaluations - s->first) / fmax((double)s->options.evaluations, 1);
-    const double limit = s->options.seconds;
-    return limit > 0 ? fmax(evaluations, (qc__now() - s->start) / limit) : evaluations;
 }
 
 /* One line a second. */

@@ -123,11 +123,39 @@ static void cancelled_state_is_valid(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* Any budget: the state is valid, and no worse. */
+static void budgets_are_kept(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *mesh = ellipsoid(ctx, 24, 20, 1, 1.2, 3);
+    qc_matching *m = smooth_matching(ctx, mesh, false);
+    for (int i = 0; i < 4; i++) {
+        qc_distortion *d = NULL;
+        assert_int_equal(qc_distortion_create(ctx, m, NULL, 1, &d), QC_OK);
+        const double before = present(d);
+        qc_reduce_options options = QC_REDUCE_OPTIONS_INIT;
+        options.create = i % 2;
+        if (i < 2)
+            options.seconds = 1e-9;
+        else
+            options.evaluations = 10;
+        assert_int_equal(qc_distortion_reduce(ctx, d, &options), QC_OK);
+        assert_true(present(d) <= before);
+        qc_distortion_state s;
+        qc_distortion_get_state(d, &s);
+        assert_true(s.evaluations < 120); /* a budget is checked once a round */
+        check_energy(ctx, d, NULL);
+        qc_distortion_free(d);
+    }
+    qc_object_release(m);
+    qc_object_release(mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(energy_falls, set_up, tear_down),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(cancelled_state_is_valid),
+        cmocka_unit_test_setup_teardown(budgets_are_kept, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
