@@ -131,7 +131,8 @@ qc_status qc__check_pattern(qc_ctx *ctx, qc__pattern A);
 /* Strictly upper triangle of P A P^T by columns (unsorted); *colptr, *row belong to the caller. */
 qc_status qc__permute_upper(qc_ctx *ctx, qc__pattern A, const int32_t *inverse, int64_t **colptr,
                             int32_t **row);
-/* The same, and where each entry comes from: p, or ~p if A(p) lies above the diagonal of P A P^T. */
+/* The same, and where each entry comes from: p, or ~p if A(p) lies above the diagonal of P A P^T.
+ */
 qc_status qc__permute_upper_from(qc_ctx *ctx, qc__pattern A, const int32_t *inverse,
                                  int64_t **colptr, int32_t **row, int64_t **source);
 /* The transpose after a change of numbers; order[number[k]] = k. Rows ascend in each column. */

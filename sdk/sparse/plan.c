@@ -1,5 +1,6 @@
 /* Schedule of the multifrontal factorisation: which subtrees are independent tasks, when the top of
  * the tree runs, and where every update matrix lives. Depends on the tree alone. */
+#include "sdk/sparse/area.h"
 #include "sdk/sparse/internal.h"
 
 /* A step costs about this much, so that progress is felt. */
@@ -100,38 +101,8 @@ static int64_t place_on_stacks(const qc_symbolic *S, qc__task task, const int32_
     return peak[0] + peak[1];
 }
 
-typedef struct live_list {
-    int32_t *node; /* by ascending offset */
-    int32_t count;
-} live_list;
-
-/* First fit among the live update matrices of the shared area. */
-static void place_shared(const qc_symbolic *S, qc__plan *plan, live_list *live, int32_t s) {
-    const int64_t size = update_size(S, s);
-    int64_t offset = 0;
-    int32_t k = 0;
-    plan->update[s] = 0;
-    if (size == 0) return;
-    for (; k < live->count; k++) {
-        if (plan->update[live->node[k]] - offset >= size) break;
-        offset = plan->update[live->node[k]] + update_size(S, live->node[k]);
-    }
-    for (int32_t q = live->count++; q > k; q--) live->node[q] = live->node[q - 1];
-    live->node[k] = s;
-    plan->update[s] = offset;
-    if (offset + size > plan->area) plan->area = offset + size;
-}
-
-static void release_children(const qc_symbolic *S, live_list *live, int32_t s) {
-    int32_t kept = 0;
-    if (S->child[s] == -1) return;
-    for (int32_t k = 0; k < live->count; k++)
-        if (S->parent[live->node[k]] != s) live->node[kept++] = live->node[k];
-    live->count = kept;
-}
-
 static void place_updates(const qc_symbolic *S, qc__plan *plan, const int32_t *depth,
-                          live_list *live) {
+                          qc__area *area) {
     for (int32_t s = 0; s < S->nsuper; s++) plan->shared[s] = true;
     for (int32_t t = 0; t < plan->ntask; t++)
         for (int32_t s = plan->task[t].first; s <= plan->task[t].last; s++)
@@ -142,13 +113,15 @@ static void place_updates(const qc_symbolic *S, qc__plan *plan, const int32_t *d
             const int64_t need = place_on_stacks(S, plan->task[t], depth, plan);
             if (need > plan->stack) plan->stack = need;
             for (int32_t s = plan->task[t].first; s <= plan->task[t].last; s++)
-                if (plan->shared[s]) place_shared(S, plan, live, s);
+                if (plan->shared[s]) qc__area_place(area, s, update_size(S, s));
         }
         for (int32_t k = step->top; k < step->top_end; k++) {
-            place_shared(S, plan, live, plan->top[k]);
-            release_children(S, live, plan->top[k]);
+            const int32_t s = plan->top[k];
+            qc__area_place(area, s, update_size(S, s));
+            for (int32_t c = S->child[s]; c != -1; c = S->sibling[c]) qc__area_release(area, c);
         }
     }
+    plan->area = area->total;
 }
 
 static void measure(const qc_symbolic *S, qc__plan *plan) {
@@ -165,14 +138,14 @@ qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S) {
     const int32_t ns = S->nsuper;
     double *cost = QC__NEW(ctx, double, ns);
     int32_t *first = QC__NEW(ctx, int32_t, ns), *depth = QC__NEW(ctx, int32_t, ns);
-    int32_t *live = QC__NEW(ctx, int32_t, ns);
+    qc__area area = {0};
     plan->task = QC__NEW(ctx, qc__task, ns);
     plan->step = QC__NEW(ctx, qc__step, ns + 1);
     plan->top = QC__NEW(ctx, int32_t, ns);
     plan->update = QC__NEW(ctx, int64_t, ns);
     plan->shared = QC__NEW(ctx, bool, ns);
     qc_status status = QC_ERR_NOMEM;
-    if (cost && first && depth && live && plan->task && plan->step && plan->top && plan->update &&
+    if (cost && first && depth && plan->task && plan->step && plan->top && plan->update &&
         plan->shared) {
         plan->cost = subtree_costs(S, cost, first);
         double limit = plan->cost / 16;
@@ -180,14 +153,13 @@ qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S) {
         if (limit > step_cost) limit = step_cost;
         cut_tree(S, cost, first, limit, plan);
         for (int32_t s = ns; s-- > 0;) depth[s] = S->parent[s] == -1 ? 0 : depth[S->parent[s]] + 1;
-        live_list list = {live, 0};
-        place_updates(S, plan, depth, &list);
         measure(S, plan);
-        status = QC_OK;
+        status = qc__area_create(ctx, ns, plan->update, &area);
+        if (status == QC_OK) place_updates(S, plan, depth, &area);
+        qc__area_free(&area);
     }
     qc__free(cost);
     qc__free(first);
     qc__free(depth);
-    qc__free(live);
     return status;
 }
