@@ -199,7 +199,10 @@ typedef struct qc__lattice {
     const double *P, *t; /* n x n, n */
     double *z, *g;       /* n: present integers; g = P (z - t) */
     int64_t moves, evaluations;
+    int64_t work; /* entries of P read by the search with a budget */
 } qc__lattice;
+/* Calls of qc__progress are this much work apart. */
+enum { QC__LATTICE_REPORT = 1 << 20 };
 
 /* Choices which differ by less than this part are ties and go to the lower index, so that rounding
  * errors, which depend on the scale of the input, decide nothing; halves round up for the same
@@ -215,6 +218,24 @@ double qc__lattice_gradient(qc__lattice *Q);
 qc_status qc__lattice_greedy(qc_ctx *ctx, qc__lattice *Q, double *inverse);
 /* lattice_search.c: lowers the energy until no change of up to `radius` entries by +-1 does. */
 qc_status qc__lattice_search(qc_ctx *ctx, qc__lattice *Q, int32_t radius);
+
+/* A basis of Z^n, the columns of U: t = U s, G = U^T P U. */
+typedef struct qc__lattice_basis {
+    int64_t n;
+    double *U, *G, *s; /* n x n, n x n, n */
+    int64_t work, budget;
+} qc__lattice_basis;
+/* lattice_reduce.c: from s = t to a reduced basis U, and G. work: n x n space. */
+qc_status qc__lattice_reduce(qc_ctx *ctx, qc__lattice_basis *B, const double *P, double *work);
+
+enum { QC__LATTICE_WINDOW = 30 };
+/* lattice_window.c: the change (width <= QC__LATTICE_WINDOW integers) of the entries index[] of z
+ * which lowers the energy most. Returns the change of energy, or 0 when none lowers it by more than
+ * `gain`. Adds to *work. Reads P and g. Thread: any. */
+double qc__lattice_window(const qc__lattice *Q, const int32_t *index, int32_t width, double gain,
+                          double *change, int64_t *work);
+/* lattice_neighbourhood.c: lowers the energy until Q->work reaches the budget or z is optimal. */
+qc_status qc__lattice_neighbourhoods(qc_ctx *ctx, qc__lattice *Q, uint64_t seed, int64_t budget);
 
 /* blas_threads.c: between begin and end OpenBLAS computes in the calling thread. Any thread; pairs
  * may overlap, the host's setting comes back with the last end. */

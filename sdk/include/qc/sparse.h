@@ -222,9 +222,13 @@ typedef struct qc_lattice_options {
     uint32_t struct_size;
     int32_t start; /* QC_ROUND_DIRECT: nearest integers; QC_ROUND_GREEDY: fix one, re-solve (MIQ) */
     int32_t radius; /* 0..3: then change up to this many entries by +-1 while the energy falls */
+    /* With a radius > 0: how many entries of P a search of larger changes may read before; about
+     * 10^9 per second. 0: none; negative: as many as suit n. */
+    int64_t budget;
+    uint64_t seed; /* of that search; the same seed and budget give the same result */
 } qc_lattice_options;
 #define QC_LATTICE_OPTIONS_INIT                                                                    \
-    { sizeof(qc_lattice_options), QC_ROUND_GREEDY, 3 }
+    { sizeof(qc_lattice_options), QC_ROUND_GREEDY, 3, -1, 0 }
 
 typedef struct qc_lattice_result {
     double energy; /* 1/2 (z - t)^T P (z - t) of the result                                  */

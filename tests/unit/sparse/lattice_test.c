@@ -186,7 +186,8 @@ static void pruning_misses_no_triple(void **state) {
                                (i == j ? 0.01 : 0);
         }
         for (int32_t radius = 2; radius <= 3; radius++) {
-            qc_lattice_options options = {sizeof options, trial % 3 ? QC_ROUND_DIRECT : 1, radius};
+            qc_lattice_options options = {sizeof options, trial % 3 ? QC_ROUND_DIRECT : 1, radius,
+                                          trial % 4 < 2 ? 0 : -1, 1};
             assert_int_equal(qc_lattice_round(ctx, N, P, t, &options, z, NULL), QC_OK);
             energy_of[radius - 2] = energy(N, P, t, z);
         }
