@@ -7,7 +7,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { DEFAULT_BUDGET = 600 }; /* times n^2 */
+enum { REDUCTION = 2000 }; /* times n^2: at most for the reduction, which needs some hundreds */
+
+/* Near the optimum up to n = 500, then time becomes linear. */
+static int64_t default_budget(int64_t n) {
+    return 1000 * n * (n < 500 ? n : 500);
+}
 
 double qc__lattice_gradient(qc__lattice *Q) {
     const int64_t n = Q->n;
@@ -66,9 +71,9 @@ static qc_status search_reduced(qc_ctx *ctx, qc__lattice *Q, const qc_lattice_op
     if (status == QC_OK) {
         double *s = vectors, *y = vectors + n;
         for (int64_t i = 0; i < n; i++) s[i] = Q->t[i] - Q->z[i];
-        qc__lattice_basis B = {n, U, U + n * n, s, 0, budget};
+        qc__lattice_basis B = {n, U, U + n * n, s, 0, REDUCTION * n * n};
         status = qc__lattice_reduce(ctx, &B, Q->P, C);
-        qc__lattice L = {(int32_t)n, B.G, s, y, y + n, 0, 0, B.work};
+        qc__lattice L = {(int32_t)n, B.G, s, y, y + n, 0, 0, 0};
         const bool greedy = options->start == QC_ROUND_GREEDY;
         const bool regular = status == QC_OK && (!greedy || decompose(L.n, B.G, true, C) < 0);
         if (regular && greedy) status = begin(ctx, &L, options->start, C);
@@ -89,7 +94,7 @@ static qc_status search_reduced(qc_ctx *ctx, qc__lattice *Q, const qc_lattice_op
 static qc_status round_lattice(qc_ctx *ctx, qc__lattice *Q, const qc_lattice_options *options,
                                double *C, qc_lattice_result *result) {
     const int64_t n = Q->n;
-    const int64_t budget = options->budget < 0 ? DEFAULT_BUDGET * n * n : options->budget;
+    const int64_t budget = options->budget < 0 ? default_budget(n) : options->budget;
     const bool large = budget > 0 && options->radius > 0;
     if (!qc__progress(ctx, 0.0)) return QC_ERR_CANCELLED;
     const int32_t bad = decompose(Q->n, Q->P, !large && options->start == QC_ROUND_GREEDY, C);

@@ -1,7 +1,7 @@
 /* Large neighbourhood search in the lattice. Neighbourhoods are the entries which couple most
  * strongly with one entry, by |P_ij| / sqrt(P_jj).
  *   - Sweeps: every neighbourhood is solved exactly (lattice_window.c), in two widths, until none
- *     gains.
+ *     gains. A neighbourhood of everything is all that is needed.
  *   - Then kicks: a few entries of one neighbourhood are changed at random, and tabu search (Glover
  *     1989: the best step, even upwards, but no entry again before some others) looks for an
  *     energy below that from which it left; if it finds none the kick is taken back.
@@ -13,6 +13,7 @@
 
 enum {
     NARROW = 20,   /* first sweep, and entries among which kicks choose; the last one: all */
+    SHARE = 64,    /* inverse part of the budget which a sweep may cost */
     KICK = 8,      /* entries changed at random */
     TENURE = 8,    /* steps before an entry may change again: so many to twice as many */
     PATIENCE = 50, /* steps without a new lowest energy since the kick */
@@ -76,11 +77,13 @@ static void add(qc__lattice *Q, int64_t i, double step) {
     Q->work += n;
 }
 
-/* Solves neighbourhoods of this width exactly until none gains. */
+/* Solves neighbourhoods of this width exactly until none gains; unless n is small that is not worth
+ * more than a small part of the budget. */
 static qc_status sweep(qc_ctx *ctx, neighbourhoods *N, int32_t width) {
     qc__lattice *Q = N->Q;
     double change[QC__LATTICE_WINDOW];
-    const int64_t n = Q->n, needed = width == n ? 1 : n;
+    const int64_t n = Q->n, needed = width == n ? 1 : n, cost = n * width * width * width;
+    if (width > n || (width < n && cost * SHARE > N->budget)) return QC_OK;
     int64_t idle = 0, reported = Q->work;
     for (int64_t i = 0; idle < needed && Q->work < N->budget; i = (i + 1) % n) {
         const int32_t *near = N->near + i * N->width;
@@ -198,8 +201,7 @@ static qc_status search(qc_ctx *ctx, neighbourhoods *N) {
     qc__lattice *Q = N->Q;
     const size_t bytes = (size_t)Q->n * sizeof *Q->z;
     N->energy = qc__lattice_gradient(Q);
-    qc_status status = QC_OK;
-    if (N->width > NARROW) status = sweep(ctx, N, NARROW);
+    qc_status status = sweep(ctx, N, NARROW);
     if (status == QC_OK) status = sweep(ctx, N, N->width);
     if (status != QC_OK || N->width == Q->n) return status;
     N->energy = N->energy_best = qc__lattice_gradient(Q);

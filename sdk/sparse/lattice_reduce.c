@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double lovasz = 0.99;     /* quotient of neighbouring |b*|^2 which is kept */
+static const double lovasz = 0.9;      /* quotient of neighbouring |b*|^2 which is kept */
 static const double half = 0.5 + 1e-6; /* exact halves, frequent by symmetry, stay as they are */
 enum { PAIR_ROUNDS = 8 };
 

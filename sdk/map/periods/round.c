@@ -11,11 +11,13 @@ enum {
     LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly */
     DENSITY_ROUNDS = 24,
     NEWTON_ROUNDS = 5, /* of these; then scales about the best are scanned */
-    REACH = 3 /* target edge lengths within which cones are kept apart                            */
+    REACH = 3 /* target edge lengths within which cones are kept apart                           */
 };
 
 static const double slack = 1e-9;    /* deviations nearer than that are equal    */
 static const double promised = 0.05; /* deviation of the number of quads which is good enough */
+/* Budget of the lattice search by variables and faces: a small part of the period matrix. */
+static const double search_share = 1.0;
 
 typedef struct rounding {
     qc_ctx *ctx;
@@ -34,6 +36,7 @@ typedef struct rounding {
     qc_complex *trial, *best; /* 3 n_faces */
     double best_scale, best_miss, harmonic, harmonic_direct;
     int64_t moves, evaluations;
+    bool coarse;        /* this trial only tells the number of quads */
     int32_t collisions; /* pairs of cones which could not be kept apart in the last trial ... */
     int32_t best_collisions; /* ... and in the best map                                           */
 } rounding;
@@ -115,6 +118,13 @@ static void scale_targets(rounding *r, double scale) {
     }
 }
 
+/* Less than the default where the rest of the stage is quick. */
+static int64_t search_budget(const rounding *r) {
+    const int64_t n = 2 * (int64_t)r->seams->n_free, standard = 1000 * (n < 500 ? n : 500);
+    const double share = search_share * r->mesh->n_faces;
+    return share < (double)standard ? (int64_t)share * n : -1;
+}
+
 /* Rounds the targets to the lattice. */
 static qc_status round_periods(rounding *r, qc_lattice_result *result) {
     const int32_t n = r->seams->n_free;
@@ -122,6 +132,11 @@ static qc_status round_periods(rounding *r, qc_lattice_result *result) {
         qc_lattice_options options = QC_LATTICE_OPTIONS_INIT;
         options.start = r->options.start;
         options.radius = r->options.radius;
+        options.budget = search_budget(r);
+        if (r->coarse) {
+            options.radius = r->options.radius < 1 ? r->options.radius : 1;
+            options.budget = 0;
+        }
         qc_status status =
             qc_lattice_round(r->ctx, 2 * n, r->P, r->target, &options, r->rounded, result);
         if (status == QC_OK)
@@ -158,7 +173,8 @@ static bool is_better(const rounding *r, double miss) {
     return miss < r->best_miss - slack;
 }
 
-/* The rounded map at a scale; keeps it when it is nearer to the wanted number of quads. */
+/* The rounded map at a scale; unless coarse, keeps it when it is nearer to the wanted number of
+ * quads. */
 static qc_status try_scale(rounding *r, double scale, double wanted, double *quads) {
     const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
     qc_lattice_result result = {0};
@@ -184,6 +200,7 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     r->moves += result.moves;
     r->evaluations += result.evaluations;
     *quads = signed_area(r->trial, r->mesh->n_faces);
+    if (r->coarse) return QC_OK;
     const double miss = wanted > 0 ? fabs(*quads / wanted - 1.0) : 0.0;
     if (r->best_scale > 0 && !is_better(r, miss)) return QC_OK;
     qc_complex *swap = r->best;
@@ -197,19 +214,29 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     return QC_OK;
 }
 
+static double scale_factor(double wanted, double quads) {
+    const double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
+    return factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
+}
+
 static qc_status meet_density(rounding *r) {
     const double wanted = r->seamless->sizing->target_quads;
-    double scale = 1.0, middle = 1.0;
+    double scale = 1.0, middle = 1.0, quads = 0;
+    if (wanted > 0 && r->P) {
+        r->coarse = true;
+        const qc_status status = try_scale(r, scale, wanted, &quads);
+        if (status != QC_OK) return status;
+        r->coarse = false;
+        scale *= scale_factor(wanted, quads);
+    }
     for (int32_t i = 0; i < DENSITY_ROUNDS; i++) {
         if (!qc__progress(r->ctx, 0.7 + 0.3 * i / DENSITY_ROUNDS)) return QC_ERR_CANCELLED;
-        double quads = 0;
         const qc_status status = try_scale(r, scale, wanted, &quads);
         if (status != QC_OK) return status;
         if (!(wanted > 0)) break;
         if (r->best_miss <= r->options.tolerance + slack && r->best_collisions == 0) break;
         if (i < NEWTON_ROUNDS - 1) {
-            const double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
-            scale *= factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
+            scale *= scale_factor(wanted, quads);
         } else { /* a map with few periods jumps: 1, -1, 2, -2, ... percent about the middle */
             if (i == NEWTON_ROUNDS - 1) middle = r->best_scale;
             const int32_t k = i - NEWTON_ROUNDS + 1;
