@@ -19,7 +19,7 @@ enum {
     PATIENCE = 50, /* steps without a new lowest energy since the kick */
     TOUCHED = 4096 /* steps after one kick, at most */
 };
-static const double least_gain = 1e-10; /* of the energy */
+static const double least_gain = 1e-10; /* of the first energy and of the largest P_ii */
 static const double forbidden = INFINITY;
 
 typedef struct neighbourhoods {
@@ -30,8 +30,8 @@ typedef struct neighbourhoods {
     double *z_best, *g_best;
     int32_t *touched; /* entries changed since z was z_best */
     int64_t n_touched;
-    double energy, energy_best;
-    int32_t ring[2 * TENURE]; /* the last entries changed, -1: none */
+    double energy, energy_best, gain; /* gain: least which counts */
+    int32_t ring[2 * TENURE];         /* the last entries changed, -1: none */
     int32_t tenure, turn;
     uint64_t random;
     int64_t budget;
@@ -87,8 +87,7 @@ static qc_status sweep(qc_ctx *ctx, neighbourhoods *N, int32_t width) {
     int64_t idle = 0, reported = Q->work;
     for (int64_t i = 0; idle < needed && Q->work < N->budget; i = (i + 1) % n) {
         const int32_t *near = N->near + i * N->width;
-        const double gain =
-            qc__lattice_window(Q, near, width, least_gain * N->energy, change, &Q->work);
+        const double gain = qc__lattice_window(Q, near, width, N->gain, change, &Q->work);
         idle = gain < 0 ? 0 : idle + 1;
         if (gain < 0) {
             for (int32_t k = 0; k < width; k++)
@@ -165,15 +164,15 @@ static void kick(neighbourhoods *N) {
         if (N->allowed[i] < forbidden) step(N, i, against);
     }
     double lowest = INFINITY;
-    for (int32_t idle = 0; idle < PATIENCE; idle++) {
+    for (int32_t idle = 0; idle < PATIENCE && N->Q->work < N->budget; idle++) {
         const int64_t i = cheapest(N);
         if (i < 0) break;
         step(N, i, true);
         N->Q->evaluations += N->Q->n;
-        if (N->energy >= lowest - least_gain * N->energy_best) continue;
+        if (N->energy >= lowest - N->gain) continue;
         lowest = N->energy;
         idle = 0;
-        if (lowest < N->energy_best * (1 - least_gain)) keep(N);
+        if (lowest < N->energy_best - N->gain) keep(N);
         if (N->n_touched >= TOUCHED) break;
     }
     take_back(N);
@@ -200,14 +199,17 @@ static qc_status prepare(qc_ctx *ctx, neighbourhoods *N, double *vectors) {
 static qc_status search(qc_ctx *ctx, neighbourhoods *N) {
     qc__lattice *Q = N->Q;
     const size_t bytes = (size_t)Q->n * sizeof *Q->z;
+    double largest = 0;
+    for (int64_t i = 0; i < Q->n; i++) largest = fmax(largest, N->half[i]);
     N->energy = qc__lattice_gradient(Q);
+    N->gain = least_gain * (N->energy + largest);
     qc_status status = sweep(ctx, N, NARROW);
     if (status == QC_OK) status = sweep(ctx, N, N->width);
     if (status != QC_OK || N->width == Q->n) return status;
     N->energy = N->energy_best = qc__lattice_gradient(Q);
     memcpy(N->z_best, Q->z, bytes);
     memcpy(N->g_best, Q->g, bytes);
-    for (int64_t reported = Q->work; Q->work < N->budget;) {
+    for (int64_t reported = Q->work; Q->work < N->budget && N->energy > N->gain;) {
         kick(N);
         if (Q->work - reported < QC__LATTICE_REPORT) continue;
         reported = Q->work;
