@@ -69,7 +69,8 @@ static double *period_matrix(qc_ctx *ctx, const qc_seamless_map *map, int32_t *n
     bench_check(ctx,
                 qc__seams_create(ctx, &cover, map->cut, map->face_turn, matching->index4, &seams));
     bench_check(ctx, qc__seams_solve(ctx, seams, QC_LATTICE_QUADS));
-    bench_check(ctx, qc__periods_create(ctx, &cover, seams, cotangent, map->face_turn, &periods));
+    bench_check(ctx,
+                qc__periods_create(ctx, &cover, seams, cotangent, map->face_turn, NULL, &periods));
     *n = 2 * seams->n_free;
     double *P = malloc((size_t)*n * (size_t)*n * sizeof *P + 1);
     bench_check(ctx, qc__period_matrix(ctx, periods, P));
