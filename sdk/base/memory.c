@@ -57,6 +57,12 @@ void *qc__realloc(qc_ctx *ctx, void *p, size_t count, size_t size) {
     return q;
 }
 
+bool qc__shrink(qc_ctx *ctx, void **array, int64_t count, size_t size) {
+    void *p = qc__realloc(ctx, *array, (size_t)count, size);
+    if (p) *array = p;
+    return p != NULL;
+}
+
 void qc__free(void *p) {
     if (!p) return;
     const block_header header = *header_of(p);

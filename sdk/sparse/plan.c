@@ -133,6 +133,14 @@ static void measure(const qc_symbolic *S, qc__plan *plan) {
     }
 }
 
+static qc_status shrink(qc_ctx *ctx, qc__plan *plan) {
+    const int32_t tops = plan->nstep > 0 ? plan->step[plan->nstep - 1].top_end : 0;
+    const bool ok = qc__shrink(ctx, (void **)&plan->task, plan->ntask, sizeof *plan->task) &&
+                    qc__shrink(ctx, (void **)&plan->step, plan->nstep, sizeof *plan->step) &&
+                    qc__shrink(ctx, (void **)&plan->top, tops, sizeof *plan->top);
+    return ok ? QC_OK : QC_ERR_NOMEM;
+}
+
 qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S) {
     qc__plan *plan = &S->plan;
     const int32_t ns = S->nsuper;
@@ -154,7 +162,8 @@ qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S) {
         cut_tree(S, cost, first, limit, plan);
         for (int32_t s = ns; s-- > 0;) depth[s] = S->parent[s] == -1 ? 0 : depth[S->parent[s]] + 1;
         measure(S, plan);
-        status = qc__area_create(ctx, ns, plan->update, &area);
+        status = shrink(ctx, plan);
+        if (status == QC_OK) status = qc__area_create(ctx, ns, plan->update, &area);
         if (status == QC_OK) place_updates(S, plan, depth, &area);
         qc__area_free(&area);
     }

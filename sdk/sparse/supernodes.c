@@ -103,6 +103,18 @@ static void renumber(qc_symbolic *S, const int32_t *newest, int32_t *old) {
     for (int32_t k = 0; k < S->n; k++) S->inverse[S->perm[k]] = k;
 }
 
+/* There are far fewer supernodes than columns. */
+static qc_status shrink(qc_ctx *ctx, qc_symbolic *S) {
+    const int64_t count = (int64_t)S->nsuper + 1;
+    const bool ok = qc__shrink(ctx, (void **)&S->super, count, sizeof *S->super) &&
+                    qc__shrink(ctx, (void **)&S->parent, count, sizeof *S->parent) &&
+                    qc__shrink(ctx, (void **)&S->child, count, sizeof *S->child) &&
+                    qc__shrink(ctx, (void **)&S->sibling, count, sizeof *S->sibling) &&
+                    qc__shrink(ctx, (void **)&S->rowptr, count, sizeof *S->rowptr) &&
+                    qc__shrink(ctx, (void **)&S->panel, count, sizeof *S->panel);
+    return ok ? QC_OK : QC_ERR_NOMEM;
+}
+
 qc_status qc__supernodes(qc_ctx *ctx, qc_symbolic *S, const int32_t *parent, const int32_t *count) {
     const int32_t n = S->n;
     group *g = QC__NEW(ctx, group, n);
@@ -119,7 +131,7 @@ qc_status qc__supernodes(qc_ctx *ctx, qc_symbolic *S, const int32_t *parent, con
         number_columns(S, ng, g, post, number, group_of, free_work);
         renumber(S, free_work, free_work + n);
         link_children(S);
-        status = QC_OK;
+        status = shrink(ctx, S);
     }
     qc__free(g);
     qc__free(work);
