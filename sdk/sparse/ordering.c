@@ -97,7 +97,7 @@ static qc_status order_dissection(qc_ctx *ctx, qc__pattern A, const qc_analyze_o
 
 /* Below this, one factorisation gains less than dissection costs (docs/theory/sparse-ordering.md).
  */
-enum { SMALL = 200000 };
+enum { SMALL = 500000 };
 
 qc_status qc__order(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *options, int32_t *perm) {
     qc_analyze_options o = QC_ANALYZE_OPTIONS_INIT;
