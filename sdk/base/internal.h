@@ -24,8 +24,8 @@ void *qc__calloc(qc_ctx *ctx, size_t count, size_t size);
 void *qc__realloc(qc_ctx *ctx, void *p, size_t count, size_t size);
 void qc__free(void *p); /* NULL is fine */
 
-/* Gives back what an array has beyond `count` elements; returns false, the array untouched, when the
- * allocator refuses. */
+/* Gives back what an array has beyond `count` elements; returns false, the array untouched, when
+ * the allocator refuses. */
 bool qc__shrink(qc_ctx *ctx, void **array, int64_t count, size_t size);
 
 #define QC__NEW(ctx, T, count)  ((T *)qc__malloc((ctx), (size_t)(count), sizeof(T)))
