@@ -11,7 +11,7 @@ static const qc_param table[] = {
     QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "", QC__LAMBDA_DOC),
     QC_PARAM_INT(params, neighbours, 3, 1, 100, "",
                  "nearest branch points of opposite sign which are tried for each one"),
-    QC_PARAM_REAL(params, spacing, 0, 0, 100, "quad",
+    QC_PARAM_REAL(params, spacing, 0.7, 0, 100, "quad",
                   "pairs nearer than this are cancelled even when E_D rises; 0 = none"),
 };
 
