@@ -16,28 +16,31 @@ static double distance2(const qc_mesh *mesh, int32_t p, int32_t q) {
     return qc__dot(d, d);
 }
 
-/* No other branch point within the distance, of those reached over edges inside the ball. */
-static bool is_free(const qc_distortion *d, double spacing, int32_t p, int32_t except) {
+/* Squared distance from p to the nearest other branch point, of those reached over edges inside the
+ * ball of the given radius; its square when there is none. */
+static double nearest2(const qc_distortion *d, double radius, int32_t p, int32_t except) {
     enum { MOST = 256 };
     const qc_mesh *mesh = d->mesh;
     int32_t seen[MOST], n = 1;
+    double least = radius * radius;
     seen[0] = p;
     for (int32_t i = 0; i < n; i++) {
         const int32_t first = mesh->vertex_corner[seen[i]];
         for (int32_t c = first, go = 1; go && c >= 0;) {
             const int32_t q[2] = {mesh->face_vertex[qc_next(c)], mesh->face_vertex[qc_prev(c)]};
             for (int k = 0; k < 2; k++) {
-                bool known = distance2(mesh, p, q[k]) >= spacing * spacing;
+                const double square = distance2(mesh, p, q[k]);
+                bool known = square >= least;
                 for (int32_t j = 0; j < n && !known; j++) known = seen[j] == q[k];
                 if (known) continue;
-                if (d->index4[q[k]] != 0 && q[k] != except) return false;
+                if (d->index4[q[k]] != 0 && q[k] != except) least = square;
                 if (n < MOST) seen[n++] = q[k];
             }
             c = qc_corner_ccw(mesh, c);
             go = c != first;
         }
     }
-    return true;
+    return least;
 }
 
 int32_t qc__new_branch_points(const qc_distortion *d, qc_flip_step flip) {
@@ -64,9 +67,12 @@ bool qc__flip_allowed(const qc_distortion *d, const qc__rules *rules, qc_flip_st
     }
     if (!rules->create && more > 0) return false;
     if (!(rules->spacing > 0) || more != 0) return true;
-    for (int i = 0; i < 2; i++)
-        if (!qc_vertex_on_boundary(d->mesh, p[i]) && d->index4[p[i]] == 0 &&
-            !is_free(d, rules->spacing, p[i], p[1 - i]))
+    for (int i = 0; i < 2; i++) { /* from p[1 - i] to p[i] */
+        if (qc_vertex_on_boundary(d->mesh, p[i]) || d->index4[p[i]] != 0) continue;
+        const double there = nearest2(d, rules->spacing, p[i], p[1 - i]);
+        if (there < rules->spacing * rules->spacing &&
+            there < nearest2(d, rules->spacing, p[1 - i], p[i]))
             return false;
+    }
     return true;
 }
