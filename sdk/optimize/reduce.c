@@ -204,8 +204,11 @@ qc_status qc_distortion_reduce(qc_ctx *ctx, qc_distortion *d, const qc_reduce_op
     if (d->n == 0 || !(d->energy > NOTHING * d->whole)) return QC_OK;
     const double before = d->energy;
     const int32_t points = d->branch_points;
+    const int64_t patience = s.options.patience;
+    if (s.options.create) s.options.patience = patience / 4 > 0 ? patience / 4 : 1;
     qc_status status = allocate(ctx, &s) ? run(ctx, &s) : QC_ERR_NOMEM;
     if (!status && s.options.create) { /* fewer are needed once the others are in place */
+        s.options.patience = patience;
         s.rules.create = true;
         status = run(ctx, &s);
     }
