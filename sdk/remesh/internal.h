@@ -38,6 +38,12 @@ qc_status qc__density_share(qc_pipeline *pipeline, const qc__density *density, c
                             double area);
 qc_status qc__density_restore(qc_pipeline *pipeline, const qc__density *density);
 
+/* --- attempts -------------------------------------------------------------------------------- */
+
+/* Runs the steps from `first` on. Where one after qc.round fails, they run again from there with
+ * other integers, a few times; each time a warning tells why. */
+qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t first, qc_bag *bag);
+
 /* --- results --------------------------------------------------------------------------------- */
 
 qc_status qc__warn(qc_ctx *ctx, qc_remesh_result *result, const char *format, ...) QC__PRINTF(3, 4);

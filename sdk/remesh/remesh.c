@@ -53,7 +53,7 @@ static qc_status run_component(job *j, int32_t c) {
     qc_status status = component_bag(j, c, &bag);
     if (status == QC_OK) {
         mesh = qc_object_retain(qc_bag_latest(bag, QC_TYPE_MESH));
-        status = qc_pipeline_run_range(j->pipeline, j->split, qc_pipeline_count(j->pipeline), bag);
+        status = qc__run_with_attempts(j->ctx, j->pipeline, j->split, bag);
     }
     if (status == QC_OK) status = qc__collection_add(j->ctx, &j->all, c, mesh, j->whole, bag);
     qc_object_release(mesh);

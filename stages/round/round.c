@@ -7,6 +7,7 @@ typedef struct params {
     int64_t radius;
     double tolerance;
     const char *solver;
+    int64_t seed;
 } params;
 static const char *const solvers[] = {QC_SOLVER_ID, NULL};
 
@@ -32,6 +33,8 @@ static const qc_param table[] = {
                   "accepted relative deviation from the target number of quads"),
     QC_PARAM_INTERFACE(params, solver, solvers,
                        "factorises L; builtin unless a plugin or the program offers another"),
+    QC_PARAM_INT(params, seed, 0, 0, 9007199254740992.0, "",
+                 "of the search for integers; another one may give other integers"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
@@ -41,6 +44,7 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.start = p->start;
     options.radius = (int32_t)p->radius;
     options.tolerance = p->tolerance;
+    options.seed = (uint64_t)p->seed;
     options.solver = (const qc_solver *)r->find(r, QC_SOLVER_ID, p->solver);
     if (!options.solver) return QC_ERR_NOT_FOUND;
     qc_corner_map *map = NULL;

@@ -4,13 +4,15 @@
  * change. */
 #include "sdk/map/periods/period_matrix.h"
 #include "sdk/map/periods/separation.h"
+#include "sdk/map/periods/wrong_cones.h"
 #include <math.h>
 #include <string.h>
 
 enum {
     LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly */
     DENSITY_ROUNDS = 24,
-    NEWTON_ROUNDS = 5, /* of these; then scales about the best are scanned */
+    NEWTON_ROUNDS = 5,   /* of these; then scales about the best are scanned */
+    WINDING_ROUNDS = 13, /* in so many, cones which wind wrong are a reason to go on */
     REACH = 3 /* target edge lengths within which cones are kept apart                           */
 };
 
@@ -39,6 +41,7 @@ typedef struct rounding {
     bool coarse;        /* this trial only tells the number of quads */
     int32_t collisions; /* pairs of cones which could not be kept apart in the last trial ... */
     int32_t best_collisions; /* ... and in the best map                                           */
+    int32_t wrong, best_wrong; /* cones which wind wrong */
 } rounding;
 
 /* --- periods of the seamless map -------------------------------------------------------------- */
@@ -118,10 +121,11 @@ static void scale_targets(rounding *r, double scale) {
     }
 }
 
-/* Less than the default where the rest of the stage is quick. */
+/* Less than the default where the rest of the stage is quick; other seeds search longer, since
+ * small problems are solved from any. */
 static int64_t search_budget(const rounding *r) {
     const int64_t n = 2 * (int64_t)r->seams->n_free, standard = 1000 * (n < 500 ? n : 500);
-    const double share = search_share * r->mesh->n_faces;
+    const double share = search_share * r->mesh->n_faces * (1 + (double)(r->options.seed % 4));
     return share < (double)standard ? (int64_t)share * n : -1;
 }
 
@@ -133,6 +137,7 @@ static qc_status round_periods(rounding *r, qc_lattice_result *result) {
         options.start = r->options.start;
         options.radius = r->options.radius;
         options.budget = search_budget(r);
+        options.seed += r->options.seed;
         if (r->coarse) {
             options.radius = r->options.radius < 1 ? r->options.radius : 1;
             options.budget = 0;
@@ -165,11 +170,12 @@ static qc_status energy_of_direct_rounding(rounding *r, double *energy) {
 }
 
 /* Whether the trial beats the best map so far: a number of quads which is good enough, then cones
- * kept apart, then the number of quads. */
+ * kept apart and winding right, then the number of quads. */
 static bool is_better(const rounding *r, double miss) {
     const bool good = miss <= promised + slack, best_good = r->best_miss <= promised + slack;
     if (good != best_good) return good;
     if (r->collisions != r->best_collisions) return r->collisions < r->best_collisions;
+    if (r->wrong != r->best_wrong) return r->wrong < r->best_wrong;
     return miss < r->best_miss - slack;
 }
 
@@ -201,6 +207,7 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     r->evaluations += result.evaluations;
     *quads = signed_area(r->trial, r->mesh->n_faces);
     if (r->coarse) return QC_OK;
+    r->wrong = qc__wrong_cones(r->mesh, r->seamless->matching->index4, r->trial);
     const double miss = wanted > 0 ? fabs(*quads / wanted - 1.0) : 0.0;
     if (r->best_scale > 0 && !is_better(r, miss)) return QC_OK;
     qc_complex *swap = r->best;
@@ -209,6 +216,7 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     r->best_scale = scale;
     r->best_miss = miss;
     r->best_collisions = r->collisions;
+    r->best_wrong = r->wrong;
     r->harmonic = result.energy;
     r->harmonic_direct = result.energy_direct;
     return QC_OK;
@@ -234,14 +242,16 @@ static qc_status meet_density(rounding *r) {
         const qc_status status = try_scale(r, scale, wanted, &quads);
         if (status != QC_OK) return status;
         if (!(wanted > 0)) break;
-        if (r->best_miss <= r->options.tolerance + slack && r->best_collisions == 0) break;
+        const bool sound =
+            r->best_collisions == 0 && (r->best_wrong == 0 || i + 1 >= WINDING_ROUNDS);
+        if (r->best_miss <= r->options.tolerance + slack && sound) break;
         if (i < NEWTON_ROUNDS - 1) {
             scale *= scale_factor(wanted, quads);
         } else { /* a map with few periods jumps: 1, -1, 2, -2, ... percent about the middle */
             if (i == NEWTON_ROUNDS - 1) middle = r->best_scale;
             const int32_t k = i - NEWTON_ROUNDS + 1;
             scale = middle * (1.0 + 0.01 * (k / 2 + 1) * (k % 2 ? -1 : 1));
-            if (r->best_miss <= promised && r->best_collisions == 0) break;
+            if (r->best_miss <= promised && sound) break;
         }
     }
     return QC_OK;

@@ -1,6 +1,7 @@
 /* The Hodge step: from a matched cross field to a locally integrable field and its integral on the
  * cut surface (thesis 4.1; 2007 paper, section 4, eq. (9)). */
 #include <math.h>
+#include "sdk/map/periods/wrong_cones.h"
 #include <qc/map.h>
 #include <string.h>
 #include "sdk/dec/internal.h"
@@ -87,28 +88,6 @@ static qc_status project(hodge *q) {
     return status;
 }
 
-/* Cones whose image angle is not 4 - index4 quarter turns: fold-overs which untangling cannot undo.
- */
-static int32_t count_wrong_cones(const hodge *q) {
-    const qc_mesh *mesh = q->mesh;
-    const double quarter = 1.57079632679489661923;
-    int32_t wrong = 0;
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
-        if (q->index4[v] == 0) continue;
-        const int32_t start = mesh->vertex_corner[v];
-        double angle = 0;
-        int32_t c = start;
-        do {
-            const qc_complex p = q->f[c], a = q->f[qc_next(c)], b = q->f[qc_prev(c)];
-            const double ax = a.re - p.re, ay = a.im - p.im, bx = b.re - p.re, by = b.im - p.im;
-            angle += atan2(ax * by - ay * bx, ax * bx + ay * by);
-            c = qc_corner_ccw(mesh, c);
-        } while (c >= 0 && c != start);
-        wrong += lround(angle / quarter) != 4 - q->index4[v];
-    }
-    return wrong;
-}
-
 /* Raises the weight of folded faces, and of those around them half as much (stiffening as in
  * mixed-integer quadrangulation, Bommes, Zimmer, Kobbelt 2009, 5.4). */
 static void stiffen(hodge *q) {
@@ -146,7 +125,7 @@ static qc_status solve(hodge *q, const qc_matching *matching, const qc_sizing *s
     for (int32_t t = 0; t < q->mesh->n_faces; t++) q->weight[t] = 1;
     for (int32_t i = 0; i <= rounds && status == QC_OK; i++) {
         if (i > 0) {
-            if (count_wrong_cones(q) == 0) break;
+            if (qc__wrong_cones(q->mesh, q->index4, q->f) == 0) break;
             stiffen(q);
         }
         const qc__range outer =

@@ -1,0 +1,34 @@
+/* Winding of the images of cones. */
+#include "sdk/map/periods/wrong_cones.h"
+#include <math.h>
+
+static double image_angle(const qc_mesh *mesh, const qc_complex *f, int32_t v) {
+    const int32_t start = mesh->vertex_corner[v];
+    double angle = 0;
+    int32_t c = start;
+    do {
+        const qc_complex p = f[c], a = f[qc_next(c)], b = f[qc_prev(c)];
+        const double ax = a.re - p.re, ay = a.im - p.im, bx = b.re - p.re, by = b.im - p.im;
+        angle += atan2(ax * by - ay * bx, ax * bx + ay * by);
+        c = qc_corner_ccw(mesh, c);
+    } while (c >= 0 && c != start);
+    return angle;
+}
+
+static bool is_folded(const qc_complex *p) {
+    return (p[1].re - p[0].re) * (p[2].im - p[0].im) - (p[2].re - p[0].re) * (p[1].im - p[0].im) <=
+           0;
+}
+
+int32_t qc__wrong_cones(const qc_mesh *mesh, const int32_t *index4, const qc_complex *f) {
+    const double quarter = 1.57079632679489661923;
+    int32_t wrong = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (index4[v] != 0) wrong += lround(image_angle(mesh, f, v) / quarter) != 4 - index4[v];
+    for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
+        const int32_t v = mesh->face_vertex[c];
+        if (index4[v] == 0 && is_folded(f + c / 3 * 3))
+            wrong += lround(image_angle(mesh, f, v) / quarter) > 4;
+    }
+    return wrong;
+}

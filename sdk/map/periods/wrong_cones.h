@@ -1,0 +1,12 @@
+/* Cones which a map winds wrong. */
+#ifndef QC_MAP_WRONG_CONES_H
+#define QC_MAP_WRONG_CONES_H
+
+#include <qc/mesh.h>
+
+/* Number of cones whose image angle is not 4 - index4 quarter turns, and of folded corners whose
+ * regular vertex is wound more than once: fold-overs which untangling can hardly undo. f: 3
+ * n_faces, index4: n_vertices. */
+int32_t qc__wrong_cones(const qc_mesh *mesh, const int32_t *index4, const qc_complex *f);
+
+#endif
