@@ -15,12 +15,6 @@ static int64_t find_round(const qc_pipeline *pipeline, uint32_t first) {
     return -1;
 }
 
-static qc_status set_seed(qc_pipeline *pipeline, const char *step, uint64_t seed) {
-    char text[24];
-    snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
-    return qc_pipeline_set(pipeline, step, "seed", text);
-}
-
 /* Rounding itself does not get better by other integers. */
 static bool failed_later(const qc_ctx *ctx, qc_status status, const char *step) {
     return status == QC_ERR_FAILED && strcmp(qc_ctx_error(ctx)->stage, step) != 0;
@@ -36,12 +30,12 @@ static qc_status run_from(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t round, qc
         qc__log(ctx, QC_LOG_WARNING, "%s; rounding again with other integers",
                 qc_ctx_error(ctx)->text);
         const qc__range outer = qc__range_begin(ctx, NULL, 1, 1);
-        status = set_seed(pipeline, step, seed + (uint64_t)k);
+        status = qc__set_seed(pipeline, step, seed + (uint64_t)k);
         if (status == QC_OK) status = qc_pipeline_run_range(pipeline, round, end, bag);
         qc__range_end(ctx, outer);
     }
     if (text) {
-        const qc_status restored = set_seed(pipeline, step, seed);
+        const qc_status restored = qc__set_seed(pipeline, step, seed);
         if (status == QC_OK) status = restored;
     }
     return status;

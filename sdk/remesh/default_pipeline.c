@@ -57,16 +57,20 @@ static qc_status append_optimisation(qc_pipeline *pipeline, int32_t mode) {
     return status == QC_OK ? qc_pipeline_set(pipeline, "curl", "create", "true") : status;
 }
 
-/* Every parameter called "seed" of any step. */
-static qc_status set_seed(qc_pipeline *pipeline, uint64_t seed) {
+qc_status qc__set_seed(qc_pipeline *pipeline, const char *step_name, uint64_t seed) {
     char text[24];
     snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
+    return qc_pipeline_set(pipeline, step_name, "seed", text);
+}
+
+/* Every parameter called "seed" of any step. */
+static qc_status set_seeds(qc_pipeline *pipeline, uint64_t seed) {
     for (uint32_t i = 0; i < qc_pipeline_count(pipeline); i++) {
         const qc_stage *stage = qc_pipeline_step_stage(pipeline, i);
         for (uint32_t p = 0; p < stage->n_params; p++) {
             if (strcmp(qc_stage_param(stage, p)->name, "seed") != 0) continue;
             const qc_status status =
-                qc_pipeline_set(pipeline, qc_pipeline_step_name(pipeline, i), "seed", text);
+                qc__set_seed(pipeline, qc_pipeline_step_name(pipeline, i), seed);
             if (status != QC_OK) return status;
         }
     }
@@ -87,7 +91,7 @@ static qc_status fill(qc_ctx *ctx, qc_pipeline *pipeline, const qc_default_pipel
     if (status == QC_OK && o->crease_angle > 0)
         status = set_real(pipeline, "features", "angle", o->crease_angle);
     if (status == QC_OK && o->crease_angle < 0) status = qc_pipeline_remove(pipeline, 1);
-    if (status == QC_OK && o->seed != 0) status = set_seed(pipeline, o->seed);
+    if (status == QC_OK && o->seed != 0) status = set_seeds(pipeline, o->seed);
     return status;
 }
 
