@@ -7,7 +7,7 @@ typedef struct field_object {
     qc_face_field field;
     qc_complex *x;
     double *weight;
-    uint8_t *trusted;
+    uint8_t *trusted, *aligned;
 } field_object;
 
 static void field_destroy(qc_object *object) {
@@ -15,6 +15,7 @@ static void field_destroy(qc_object *object) {
     qc__free(o->x);
     qc__free(o->weight);
     qc__free(o->trusted);
+    qc__free(o->aligned);
     qc_object_release(o->field.mesh);
     qc__free(o);
 }
@@ -65,5 +66,31 @@ qc_status qc_face_field_create(qc_ctx *ctx, const qc_mesh *mesh, const qc_comple
     o->field.weight = o->weight;
     o->field.trusted = o->trusted;
     *out = &o->field;
+    return QC_OK;
+}
+
+qc_status qc_face_field_set_aligned(qc_ctx *ctx, qc_face_field *field, const uint8_t *edge) {
+    const qc_mesh *mesh = field->mesh;
+    field_object *o = (field_object *)field;
+    qc_complex *tangent = QC__NEW(ctx, qc_complex, 3 * (size_t)mesh->n_faces);
+    uint8_t *aligned = QC__NEW(ctx, uint8_t, mesh->n_edges);
+    qc_status status = tangent && aligned ? qc_tangent_edges(ctx, mesh, tangent) : QC_ERR_NOMEM;
+    for (int32_t i = 0; !status && i < 2 * mesh->n_edges; i++) {
+        const int32_t h = mesh->edge_halfedge[i];
+        aligned[i / 2] = edge[i / 2] != 0;
+        if (h < 0 || !edge[i / 2]) continue;
+        if (qc__axis_deviation(tangent[h], o->x[h / 3]) > 1e-6)
+            status =
+                qc__fail(ctx, QC_ERR_ARGUMENT, i / 2,
+                         "the cross of face %d does not run along edge %d; turn it there first",
+                         (int)(h / 3), (int)(i / 2));
+    }
+    qc__free(tangent);
+    if (status) {
+        qc__free(aligned);
+        return status;
+    }
+    qc__free(o->aligned);
+    o->field.aligned = o->aligned = aligned;
     return QC_OK;
 }

@@ -84,6 +84,14 @@ qc_status qc__smoother_create(qc_ctx *ctx, const qc_mesh *mesh, const double *we
                               const uint8_t *trusted, double lambda, qc__smoother *out);
 void qc__smoother_free(qc__smoother *smoother);
 
+/* k in 0..3 such that edge vector e points nearest to i^k x, and how far it is off (radians). */
+static inline int32_t qc__axis(qc_complex e, qc_complex x) {
+    return (int32_t)lround(2 * qc__arg(qc__c(e) * conj(qc__c(x))) / QC__PI) & 3;
+}
+static inline double qc__axis_deviation(qc_complex e, qc_complex x) {
+    return fabs(qc__arg(qc__fourth(qc__c(e) * conj(qc__c(x)))) / 4);
+}
+
 /* Shape operator of a face in its frame, [a b; b d]: larger |eigenvalue| first in kappa[2]. */
 qc__cplx qc__principal(double a, double b, double d, double kappa[2]);
 

@@ -6,6 +6,7 @@ typedef struct matching_object {
     int8_t *m;
     double *theta;
     int32_t *index4;
+    int8_t *axis;
 } matching_object;
 
 static void matching_destroy(qc_object *object) {
@@ -13,6 +14,7 @@ static void matching_destroy(qc_object *object) {
     qc__free(o->m);
     qc__free(o->theta);
     qc__free(o->index4);
+    qc__free(o->axis);
     qc_object_release(o->matching.field);
     qc__free(o);
 }
@@ -103,6 +105,15 @@ static qc_status measure_indices(qc_ctx *ctx, const qc_mesh *mesh, const qc_comp
     return QC_OK;
 }
 
+/* Which direction of the cross the hard features follow. */
+static void measure_axes(const qc_face_field *field, const qc_complex *edge, int8_t *axis) {
+    const qc_mesh *mesh = field->mesh;
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        const int32_t h = mesh->edge_halfedge[2 * e];
+        axis[e] = field->aligned[e] ? (int8_t)qc__axis(edge[h], field->x[h / 3]) : -1;
+    }
+}
+
 static qc_status fill(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
                       matching_object *o) {
     const qc_mesh *mesh = field->mesh;
@@ -119,6 +130,7 @@ static qc_status fill(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
         } else {
             qc__field_match(ctx, mesh, rho, field->x, o->m, o->theta);
         }
+        if (o->axis) measure_axes(field, edge, o->axis);
         status = measure_indices(ctx, mesh, edge, o);
     }
     qc__free(edge);
@@ -136,7 +148,9 @@ qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8
     o->m = QC__NEW(ctx, int8_t, mesh->n_edges);
     o->theta = QC__NEW(ctx, double, mesh->n_edges);
     o->index4 = QC__NEW(ctx, int32_t, mesh->n_vertices);
-    qc_status status = o->m && o->theta && o->index4 ? QC_OK : QC_ERR_NOMEM;
+    if (field->aligned) o->axis = QC__NEW(ctx, int8_t, mesh->n_edges);
+    qc_status status =
+        o->m && o->theta && o->index4 && (o->axis || !field->aligned) ? QC_OK : QC_ERR_NOMEM;
     if (!status) status = fill(ctx, field, m, o);
     if (status) {
         qc_object_release(&o->matching);
@@ -145,6 +159,7 @@ qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8
     o->matching.m = o->m;
     o->matching.theta = o->theta;
     o->matching.index4 = o->index4;
+    o->matching.axis = o->axis;
     *out = &o->matching;
     return QC_OK;
 }

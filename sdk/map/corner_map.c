@@ -12,6 +12,7 @@ static void corner_map_destroy(qc_object *object) {
     qc__free((void *)(uintptr_t)map->uv);
     qc__free((void *)(uintptr_t)map->cross);
     qc__free((void *)(uintptr_t)map->rotation);
+    qc__free((void *)(uintptr_t)map->axis);
     qc__free((void *)(uintptr_t)map->relaxed);
     qc__free(map);
 }
@@ -58,13 +59,23 @@ qc_status qc_corner_map_create(qc_ctx *ctx, const qc_mesh *mesh, const double *u
     return QC_OK;
 }
 
-qc_status qc_corner_map_set_rotation(qc_ctx *ctx, qc_corner_map *map, const int8_t *rotation) {
-    int8_t *copy = QC__NEW(ctx, int8_t, map->mesh->n_edges);
+/* A copy of n_edges entries in place of *slot. */
+static qc_status replace_by_copy(qc_ctx *ctx, const qc_mesh *mesh, const int8_t *values,
+                                 const int8_t **slot) {
+    int8_t *copy = QC__NEW(ctx, int8_t, mesh->n_edges);
     if (!copy) return QC_ERR_NOMEM;
-    memcpy(copy, rotation, sizeof *copy * (size_t)map->mesh->n_edges);
-    qc__free((void *)(uintptr_t)map->rotation);
-    map->rotation = copy;
+    memcpy(copy, values, sizeof *copy * (size_t)mesh->n_edges);
+    qc__free((void *)(uintptr_t)*slot);
+    *slot = copy;
     return QC_OK;
+}
+
+qc_status qc_corner_map_set_rotation(qc_ctx *ctx, qc_corner_map *map, const int8_t *rotation) {
+    return replace_by_copy(ctx, map->mesh, rotation, &map->rotation);
+}
+
+qc_status qc_corner_map_set_axis(qc_ctx *ctx, qc_corner_map *map, const int8_t *axis) {
+    return replace_by_copy(ctx, map->mesh, axis, &map->axis);
 }
 
 qc_status qc_corner_map_set_relaxed(qc_ctx *ctx, qc_corner_map *map, const double *uv) {

@@ -33,12 +33,17 @@ typedef struct qc_face_field {
     const qc_complex *x;    /* n_faces, |x| = 1    */
     const double *weight;   /* optional, n_faces: stability weights (5.2), dimensionless, >= 0   */
     const uint8_t *trusted; /* optional, n_faces: 1 where the direction is to be kept */
+    const uint8_t *aligned; /* optional, n_edges: 1 on hard features, which isolines have to follow;
+                               a direction of the cross runs along such an edge on either side */
 } qc_face_field;
 /* Copies its arrays (weight, trusted may be NULL), normalises x, retains the mesh. ARGUMENT with
  * where = face when x is zero or not finite. */
 QC_API qc_status qc_face_field_create(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *x,
                                       const double *weight, const uint8_t *trusted,
                                       qc_face_field **out);
+/* Declares the flagged edges (n_edges, copied) hard features of a field which is not yet shared.
+ * ARGUMENT with where = edge when the cross of a face beside it is more than 1e-6 off the edge. */
+QC_API qc_status qc_face_field_set_aligned(qc_ctx *ctx, qc_face_field *field, const uint8_t *edge);
 
 enum { QC_CURVATURE_HILDEBRANDT_POLTHIER = 0, QC_CURVATURE_COHEN_STEINER_MORVAN = 1 };
 /* Principal curvature directions (thesis 5.1.1): x = direction of the larger |curvature|; kappa (2
@@ -99,6 +104,8 @@ typedef struct qc_matching {
     const int8_t *m;     /* n_edges: a = arg(x_t / (rho x_s)), m = round(2 a / pi); 0 on boundary */
     const double *theta; /* n_edges: a - m pi / 2                                            */
     const int32_t *index4; /* n_vertices: index in quarters; 0 on the boundary                 */
+    const int8_t *axis;    /* optional, n_edges: -1, or on hard features k in 0..3: the halfedge
+                              edge_halfedge[2 e] runs along i^k x_s in its face s              */
     int32_t n_singular;    /* interior vertices with index4 != 0                                */
     int32_t index4_sum;    /* = 4 chi on a closed mesh (checked)                               */
 } qc_matching;

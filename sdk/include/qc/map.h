@@ -55,8 +55,11 @@ typedef struct qc_corner_map {
     const qc_complex *cross; /* optional, n_faces: directions the map was to follow (tangent frame),
                                 in the gauge of the map: grad u ~ cross / edge_length */
     const int8_t *rotation;  /* optional, n_edges: r of f_t = i^r f_s + tau where it is known  */
-    const double *relaxed;   /* optional, 6 n_faces: the map before rounding, in the same charts:
-                                where   untangling starts from   */
+    const int8_t *axis;    /* optional, n_edges: -1, or on hard features k in 0..3: the image of the
+                              halfedge edge_halfedge[2 e] in the chart of its face s runs along i^k,
+                              on an isoline                                                        */
+    const double *relaxed; /* optional, 6 n_faces: the map before rounding, in the same charts:
+                              where   untangling starts from   */
     double field_energy, curl_energy; /* as in qc_seamless_map; 0 = unknown           */
     double harmonic_energy, harmonic_energy_direct; /* E_H reached, and by direct rounding */
     int64_t iterations, evaluations; /* of the rounding search                      */
@@ -69,6 +72,8 @@ QC_API qc_status qc_corner_map_create(qc_ctx *ctx, const qc_mesh *mesh, const do
  * collapsed edges do not tell them. */
 QC_API qc_status qc_corner_map_set_rotation(qc_ctx *ctx, qc_corner_map *map,
                                             const int8_t *rotation);
+/* Attaches the hard features (n_edges, copied) to a map which is not yet shared. */
+qc_status qc_corner_map_set_axis(qc_ctx *ctx, qc_corner_map *map, const int8_t *axis);
 /* Attaches the map before rounding (6 n_faces, copied) to a map which is not yet shared. */
 QC_API qc_status qc_corner_map_set_relaxed(qc_ctx *ctx, qc_corner_map *map, const double *uv);
 /* The map as a polygon mesh with one vt per corner, and back: faces of `soup` must be triangles

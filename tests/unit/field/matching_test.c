@@ -42,6 +42,46 @@ static void boundary_vertices_have_no_index(void **state) {
     free(x);
 }
 
+/* The boundary of a cylinder is a feature; the axis found turns the cross onto the halfedge. */
+static void hard_features_have_an_axis(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *mesh = grid(ctx, CYLINDER, 12, 8, 1);
+    const size_t n_faces = (size_t)mesh->n_faces, n_edges = (size_t)mesh->n_edges;
+    qc_complex *x = random_crosses(mesh, 3), *tangent = calloc(3 * n_faces, sizeof *tangent);
+    double *weight = calloc(n_faces, sizeof *weight);
+    uint8_t *trusted = calloc(n_faces, 1), *edge = calloc(n_edges, 1);
+    for (int32_t e = 0; e < mesh->n_edges; e++) edge[e] = mesh->edge_halfedge[2 * e + 1] < 0;
+    qc_face_field *field = NULL;
+    qc_matching *m = NULL;
+    assert_int_equal(qc_tangent_edges(ctx, mesh, tangent), QC_OK);
+    assert_int_equal(qc_face_field_create(ctx, mesh, x, NULL, NULL, &field), QC_OK);
+    assert_int_equal(qc_face_field_set_aligned(ctx, field, edge), QC_ERR_ARGUMENT);
+    assert_null(field->aligned);
+    qc_object_release(field);
+    assert_int_equal(qc_field_align(ctx, mesh, edge, 1, x, weight, trusted), QC_OK);
+    assert_int_equal(qc_face_field_create(ctx, mesh, x, NULL, NULL, &field), QC_OK);
+    assert_int_equal(qc_face_field_set_aligned(ctx, field, edge), QC_OK);
+    assert_int_equal(qc_matching_create(ctx, field, NULL, &m), QC_OK);
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        if (!edge[e]) {
+            assert_int_equal(m->axis[e], -1);
+            continue;
+        }
+        const int32_t h = mesh->edge_halfedge[2 * e];
+        const qc_complex along = qc_quarter_turn(x[h / 3], m->axis[e]);
+        assert_true(along.re * tangent[h].re + along.im * tangent[h].im >
+                    (1 - 1e-12) * hypot(tangent[h].re, tangent[h].im));
+    }
+    qc_object_release(m);
+    qc_object_release(field);
+    qc_object_release(mesh);
+    free(x);
+    free(tangent);
+    free(weight);
+    free(trusted);
+    free(edge);
+}
+
 static void quarter_turns_change_the_matching_only_by_the_gauge(void **state) {
     qc_ctx *ctx = *state;
     qc_mesh *mesh = grid(ctx, TORUS, 10, 7, 1);
@@ -140,6 +180,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_fields_sum_to_four_chi),
         cmocka_unit_test(boundary_vertices_have_no_index),
+        cmocka_unit_test(hard_features_have_an_axis),
         cmocka_unit_test(quarter_turns_change_the_matching_only_by_the_gauge),
         cmocka_unit_test(given_matchings_move_indices),
         cmocka_unit_test(scale_does_not_matter),
