@@ -46,7 +46,7 @@ typedef struct qc__plan {
     double cost; /* of all */
 } qc__plan;
 
-/* workspace.c */
+/* factor/workspace.c */
 typedef struct qc__workspace {
     uint32_t workers;
     double *area;                    /* shared update matrices */
@@ -141,43 +141,44 @@ qc_status qc__transpose_renumbered(qc_ctx *ctx, qc__pattern A, const int32_t *or
 /* Rows become columns and ascend within each. */
 qc_status qc__transpose(qc_ctx *ctx, qc__pattern A, int64_t **colptr, int32_t **row);
 
-/* ordering.c: perm: n */
+/* order/ordering.c: perm: n */
 qc_status qc__order(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *options, int32_t *perm);
 
-/* etree.c; upper: strictly upper triangle by columns; work: n */
+/* analyze/etree.c; upper: strictly upper triangle by columns; work: n */
 void qc__etree(qc__pattern upper, int32_t *parent, int32_t *work);
 /* post[k] = node visited k-th, children in ascending order; work: 3 n */
 void qc__postorder(int32_t n, const int32_t *parent, int32_t *post, int32_t *work);
 
-/* column_counts.c; lower: strictly lower triangle by columns, postordered; work: 4 n */
+/* analyze/column_counts.c; lower: strictly lower triangle by columns, postordered; work: 4 n */
 void qc__column_counts(qc__pattern lower, const int32_t *parent, int32_t *count, int32_t *work);
 
-/* supernodes.c: fills nsuper, super, super_of, parent, child, sibling, rowptr, panel of S and
- * changes S->perm, S->inverse to the final order. parent, count: of the columns, postordered. */
+/* analyze/supernodes.c: fills nsuper, super, super_of, parent, child, sibling, rowptr, panel of S
+ * and changes S->perm, S->inverse to the final order. parent, count: of the columns, postordered.
+ */
 qc_status qc__supernodes(qc_ctx *ctx, qc_symbolic *S, const int32_t *parent, const int32_t *count);
 
-/* plan.c */
+/* analyze/plan.c */
 qc_status qc__plan_create(qc_ctx *ctx, qc_symbolic *S);
 void qc__plan_free(qc__plan *plan);
 
-/* solve_plan.c, after plan.c */
+/* solve/solve_plan.c, after plan.c */
 qc_status qc__solve_plan_create(qc_ctx *ctx, qc_symbolic *S);
 static inline int64_t qc__rows_below(const qc_symbolic *S, int32_t s) {
     return S->rowptr[s + 1] - S->rowptr[s] - (S->super[s + 1] - S->super[s]);
 }
 
-/* analyze.c */
+/* analyze/analyze.c */
 qc_symbolic *qc__symbolic_retain(const qc_symbolic *S);
 
-/* factor.c */
+/* factor/factor.c */
 qc_status qc__factor_create(qc_ctx *ctx, const qc_symbolic *S, int32_t components, qc_factor **out);
 qc_status qc__factor_check(qc_ctx *ctx, const qc_factor *F, int32_t components, bool values);
 
-/* modify.c: frees F->modify; a new factorisation ends transactions and makes z stale. */
+/* modify/modify.c: frees F->modify; a new factorisation ends transactions and makes z stale. */
 void qc__modify_free(qc_factor *F);
 void qc__modify_reset(qc_factor *F);
 
-/* front.c, front_real.c: partial LDL^H of one front in place. */
+/* factor/front.c, front_real.c: partial LDL^H of one front in place. */
 typedef struct qc__front {
     int32_t r, w;
     double *panel, *U;   /* r x w; m x m with m = r - w, lower triangle updated */
@@ -193,52 +194,8 @@ enum { QC__DONE = -1, QC__CANCELLED = -2 };
 int32_t qc__front_factor(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *front);
 int32_t qc__front_factor_real(qc_ctx *ctx, const qc__kernels *kernels, const qc__front *front);
 
-/* The closest-vector problem min 1/2 (z - t)^T P (z - t) while it is being solved. */
-typedef struct qc__lattice {
-    int32_t n;
-    const double *P, *t; /* n x n, n */
-    double *z, *g;       /* n: present integers; g = P (z - t) */
-    int64_t moves, evaluations;
-    int64_t work; /* entries of P read by the search with a budget */
-} qc__lattice;
-/* Calls of qc__progress are this much work apart. */
-enum { QC__LATTICE_REPORT = 1 << 20 };
-
-/* Choices which differ by less than this part are ties and go to the lower index, so that rounding
- * errors, which depend on the scale of the input, decide nothing; halves round up for the same
- * reason. */
-static const double qc__lattice_tie = 1e-9;
-static inline double qc__lattice_nearest(double x) {
-    return floor(x + 0.5 + qc__lattice_tie);
-}
-
-/* lattice.c: g from scratch; returns the energy. */
-double qc__lattice_gradient(qc__lattice *Q);
-/* lattice_greedy.c: overwrites z. inverse: P^{-1}, lower triangle, destroyed. */
-qc_status qc__lattice_greedy(qc_ctx *ctx, qc__lattice *Q, double *inverse);
-/* lattice_search.c: lowers the energy until no change of up to `radius` entries by +-1 does. */
-qc_status qc__lattice_search(qc_ctx *ctx, qc__lattice *Q, int32_t radius);
-
-/* A basis of Z^n, the columns of U: t = U s, G = U^T P U. */
-typedef struct qc__lattice_basis {
-    int64_t n;
-    double *U, *G, *s; /* n x n, n x n, n */
-    int64_t work, budget;
-} qc__lattice_basis;
-/* lattice_reduce.c: from s = t to a reduced basis U, and G. work: n x n space. */
-qc_status qc__lattice_reduce(qc_ctx *ctx, qc__lattice_basis *B, const double *P, double *work);
-
-enum { QC__LATTICE_WINDOW = 30 };
-/* lattice_window.c: the change (width <= QC__LATTICE_WINDOW integers) of the entries index[] of z
- * which lowers the energy most. Returns the change of energy, or 0 when none lowers it by more than
- * `gain`. Adds to *work. Reads P and g. Thread: any. */
-double qc__lattice_window(const qc__lattice *Q, const int32_t *index, int32_t width, double gain,
-                          double *change, int64_t *work);
-/* lattice_neighbourhood.c: lowers the energy until Q->work reaches the budget or z is optimal. */
-qc_status qc__lattice_neighbourhoods(qc_ctx *ctx, qc__lattice *Q, uint64_t seed, int64_t budget);
-
-/* blas_threads.c: between begin and end OpenBLAS computes in the calling thread. Any thread; pairs
- * may overlap, the host's setting comes back with the last end. */
+/* factor/blas_threads.c: between begin and end OpenBLAS computes in the calling thread. Any thread;
+ * pairs may overlap, the host's setting comes back with the last end. */
 void qc__blas_begin(void);
 void qc__blas_end(void);
 
@@ -256,8 +213,8 @@ static inline qc__view qc__view_real(const qc_symmetric *A) {
     return (qc__view){A->n, 1, A->colptr, A->row, A->val};
 }
 
-/* refine.c: solves with any solver and refines; x: n x nrhs, on error as it was. error: NULL, or
- * the largest componentwise backward error. */
+/* solve/refine.c: solves with any solver and refines; x: n x nrhs, on error as it was. error: NULL,
+ * or the largest componentwise backward error. */
 typedef qc_status qc__solve_any(qc_ctx *ctx, void *arg, int32_t nrhs, double *x);
 qc_status qc__refine(qc_ctx *ctx, qc__view A, int32_t nrhs, int32_t steps, qc__solve_any *solve,
                      void *arg, double *x, double *error);

@@ -2,7 +2,7 @@
 #ifndef QC_BENCH_LATTICE_H
 #define QC_BENCH_LATTICE_H
 
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 
 /* Exits with a message unless OK. */
 void bench_check(qc_ctx *ctx, qc_status status);

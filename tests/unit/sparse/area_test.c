@@ -1,6 +1,6 @@
 /* Planned places never overlap while blocks live, gaps are used again, and many blocks are quick.
  */
-#include "sdk/sparse/area.h"
+#include "sdk/sparse/analyze/area.h"
 #include "support.h"
 
 static void live_blocks_never_overlap(void **state) {

@@ -1,8 +1,8 @@
-/* Lattice problems like those of cones on a sphere, for the tests of lattice*.c. */
+/* Lattice problems like those of cones on a sphere, for the tests of sdk/sparse/lattice. */
 #ifndef QC_TESTS_LATTICE_PROBLEM_H
 #define QC_TESTS_LATTICE_PROBLEM_H
 
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 #include "support.h"
 
 /* P = B^T K B: K couples random points of the plane like a Green's function, B is unimodular with

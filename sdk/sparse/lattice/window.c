@@ -5,7 +5,7 @@
  * entries are fixed from the last to the first, each at its best value, then its next best, until
  * the partial sum reaches the best so far, which is at the start that of y = 0. Pivots are chosen
  * smallest first (Wuebben et al. 2001), so that the entries fixed early have few candidates. */
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 #include <math.h>
 
 enum { W = QC__LATTICE_WINDOW, NODES = 20000 };

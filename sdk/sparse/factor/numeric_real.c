@@ -1,3 +1,3 @@
 /* numeric.c for real matrices. */
 #define QC__REAL
-#include "sdk/sparse/numeric.c"
+#include "sdk/sparse/factor/numeric.c"

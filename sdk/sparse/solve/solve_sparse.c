@@ -3,7 +3,7 @@
  * L^{-H} D^{-1} y (rows of x depend on ancestors only). Values are kept by path, not by matrix. */
 #include <math.h>
 #include <string.h>
-#include "sdk/sparse/reach.h"
+#include "sdk/sparse/solve/reach.h"
 
 typedef struct run {
     const qc_factor *F;

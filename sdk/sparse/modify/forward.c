@@ -4,7 +4,7 @@
  * each front on the path starts again from b and the contributions of its children; hence z is at
  * any time, bit for bit, what a solve from the start with the present L gives. */
 #include <string.h>
-#include "sdk/sparse/modify.h"
+#include "sdk/sparse/modify/modify.h"
 
 static int64_t width(const qc_symbolic *S, int32_t s) {
     return S->super[s + 1] - S->super[s];

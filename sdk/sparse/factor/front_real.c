@@ -1,3 +1,3 @@
 /* front.c for real matrices. */
 #define QC__REAL
-#include "sdk/sparse/front.c"
+#include "sdk/sparse/factor/front.c"

@@ -5,7 +5,7 @@
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
-#include "sdk/sparse/scalar.h"
+#include "sdk/sparse/factor/scalar.h"
 
 typedef struct block {
     const qc__kernels *kernels;

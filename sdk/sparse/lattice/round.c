@@ -1,7 +1,7 @@
 /* Rounding to a lattice: integers z with small 1/2 (z - t)^T P (z - t) (thesis 6.3), from a start
  * of nearest integers or of greedy fixing, improved by local search. With a budget, start and large
  * neighbourhood search run in a reduced basis, and local search in the given one comes last. */
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>

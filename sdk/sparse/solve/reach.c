@@ -1,6 +1,6 @@
 /* Union of paths in the tree by merging: a heap holds the next supernode of every path; equal ones
  * join. Parents have higher numbers, so supernodes come out in ascending order. */
-#include "sdk/sparse/reach.h"
+#include "sdk/sparse/solve/reach.h"
 
 typedef struct step {
     int32_t super, from; /* from: position of the child, -1 at the start of a path */

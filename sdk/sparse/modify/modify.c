@@ -1,5 +1,5 @@
 /* What a factor needs once it is modified. */
-#include "sdk/sparse/modify.h"
+#include "sdk/sparse/modify/modify.h"
 
 static void modify_free(struct qc__modify *M) {
     if (!M) return;

@@ -3,7 +3,7 @@
  * Gauss: b_i -= q b_j while that is shorter), then Lenstra, Lenstra, Lovasz 1982 on the Cholesky
  * factor, kept triangular by plane rotations, then pairs again, which also shortens early vectors
  * by later ones. Every step leaves a basis, so the reduction ends where its budget does. */
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>

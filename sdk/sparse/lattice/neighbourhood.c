@@ -1,13 +1,13 @@
 /* Large neighbourhood search in the lattice. Neighbourhoods are the entries which couple most
  * strongly with one entry, by |P_ij| / sqrt(P_jj).
- *   - Sweeps: every neighbourhood is solved exactly (lattice_window.c), in two widths, until none
+ *   - Sweeps: every neighbourhood is solved exactly (window.c), in two widths, until none
  *     gains. A neighbourhood of everything is all that is needed.
  *   - Then kicks: a few entries of one neighbourhood are changed at random, and tabu search (Glover
  *     1989: the best step, even upwards, but no entry again before some others) looks for an
  *     energy below that from which it left; if it finds none the kick is taken back.
- * Best in a reduced basis (lattice_reduce.c), where single entries hardly interact. The result
+ * Best in a reduced basis (reduce.c), where single entries hardly interact. The result
  * depends on the seed and on the budget, which counts entries of P read, not seconds. */
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 #include <math.h>
 #include <string.h>
 

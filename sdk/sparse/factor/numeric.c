@@ -1,7 +1,7 @@
 /* Multifrontal factorisation P A P^T = L D L^H (Duff, Reid 1983; Liu 1992) along the schedule of
  * plan.c. The front of a supernode is its panel of L and its update matrix; the children's update
  * matrices are added into both. Compiled twice, see scalar.h. */
-#include "sdk/sparse/scalar.h"
+#include "sdk/sparse/factor/scalar.h"
 #include <string.h>
 
 typedef struct run {

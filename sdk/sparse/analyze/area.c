@@ -1,6 +1,6 @@
 /* Places of blocks in one area of memory, planned before any exists: first fit among the live ones,
  * with a bounded search so that any tree is planned in linear time. */
-#include "sdk/sparse/area.h"
+#include "sdk/sparse/analyze/area.h"
 
 enum { SEARCH = 64 };
 

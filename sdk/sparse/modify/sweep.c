@@ -4,7 +4,7 @@
  * indices. Positive terms come first in every column, so that no intermediate matrix is less
  * definite than the result. The forward solution is redone on the same fronts. */
 #include <string.h>
-#include "sdk/sparse/modify.h"
+#include "sdk/sparse/modify/modify.h"
 
 typedef struct sweep {
     qc_factor *F;

@@ -4,7 +4,7 @@
  * x_j by Q_ji / Q_ii (z_i - x_i), and Q <- Q - q_i q_i^T / Q_ii, which is Cholesky elimination of
  * P^{-1} in the order of the choices. The rank-1 changes are collected in V and applied to Q in
  * blocks. */
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 #include <cblas.h>
 #include <math.h>
 #include <string.h>

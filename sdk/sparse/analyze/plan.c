@@ -1,6 +1,6 @@
 /* Schedule of the multifrontal factorisation: which subtrees are independent tasks, when the top of
  * the tree runs, and where every update matrix lives. Depends on the tree alone. */
-#include "sdk/sparse/area.h"
+#include "sdk/sparse/analyze/area.h"
 #include "sdk/sparse/internal.h"
 
 /* A step costs about this much, so that progress is felt. */

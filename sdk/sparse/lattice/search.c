@@ -6,7 +6,7 @@
  * triple can only gain if the sum of its -c exceeds the sum of its a, which is the sum over its
  * three pairs of (a_i + a_j) / 2. Hence one pair has -c_ij > (a_i + a_j) / 2, and only such pairs
  * are extended; nothing is missed. */
-#include "sdk/sparse/internal.h"
+#include "sdk/sparse/lattice/internal.h"
 #include <math.h>
 
 /* A move counts when it gains more than this part of the energy and of the P_ii involved. */

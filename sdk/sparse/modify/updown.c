@@ -1,5 +1,5 @@
 /* Modifications of a factor: rank 1, rank k, and the flip of a matching as a case of rank 2. */
-#include "sdk/sparse/modify.h"
+#include "sdk/sparse/modify/modify.h"
 
 enum { MOST_ROWS = 3 }; /* of a flip */
 

@@ -1,7 +1,7 @@
 /* The journal of modifications: old values, which a roll back restores bit for bit, last first.
  * Outside a transaction it holds the last modification, inside all since its begin. */
 #include <string.h>
-#include "sdk/sparse/modify.h"
+#include "sdk/sparse/modify/modify.h"
 
 void qc__journal_begin(qc_factor *F) {
     qc__journal *J = &F->modify->journal;
