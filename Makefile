@@ -2,9 +2,10 @@
 PREFIX ?= /usr/local
 MESH   ?=
 QUADS  ?= 5000
+PARTS  ?=
 JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: build setup demo check bench format check-format install clean
+.PHONY: build setup demo check bench results format check-format install clean
 
 build: setup
 	cmake --preset release >/dev/null
@@ -33,7 +34,13 @@ check: build check-format
 # The sparse factorisation against its peers (docs/performance.md is rewritten). A quarter of an hour; needs the
 # meshes of QC_TEST_DATA and an otherwise idle machine.
 bench: build
-	sh tests/bench/sparse/page.sh build/bin/bench_sparse docs/performance.md --json build/bench_sparse.json
+	sh tests/bench/common/page.sh docs/performance.md bench_sparse \
+	    build/bin/bench_sparse --markdown --json build/bench_sparse.json
+
+# The numbers of the thesis beside ours (docs/results.md and its figures are rewritten). A quarter of an hour;
+# PARTS="table-6.1 acceptance" for some of it.
+results: build
+	sh tests/bench/thesis/results.sh build/bin docs/results.md docs/images/results $(PARTS)
 
 # Formatting of all tracked sources by .clang-format.
 format check-format: setup

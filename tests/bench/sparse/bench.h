@@ -5,51 +5,7 @@
 #ifndef QC_BENCH_SPARSE_H
 #define QC_BENCH_SPARSE_H
 
-#include <qc/cover.h>
-#include <qc/field.h>
-#include <qc/sparse.h>
-
-/* --- surface.c, matrix.c: the matrices -------------------------------------------------------- */
-
-/* Change of the matrix by one matching flip: D(k,l) += dl, D(k,m) += dm and the conjugates, which
- * is w[0] w[0]^H - w[1] w[1]^H on the rows (k, l, m). */
-typedef struct bench_flip {
-    int32_t row[3];
-    qc_complex dl, dm;
-    qc_complex w[2][3];
-} bench_flip;
-
-typedef struct bench_matrix {
-    char name[64];
-    int32_t faces;
-    qc_hermitian A; /* borrowed from stiffness */
-    qc_stiffness *stiffness;
-    int32_t (*path)[3]; /* n x 3: rows of the flip of each edge, row[0] = -1 when it has none */
-    double *position;   /* n x 3: midpoints of the edges */
-    int32_t n_flips;
-    bench_flip *flips;
-} bench_matrix;
-
-/* A smoothed cross field on the mesh of the file, then `levels` midpoint subdivisions with the
- * cross of each face handed to its four parts, which lie in its plane. A NULL path makes a small
- * mesh. cache (may be NULL): folder where fields are kept between runs. */
-qc_matching *bench_surface(qc_ctx *ctx, const char *path, int32_t levels, const char *cache);
-/* The non-conforming stiffness of qc.hodge and `flips` random flips. */
-bench_matrix *bench_make_matrix(qc_ctx *ctx, const char *name, const qc_matching *matching,
-                                int32_t flips);
-void bench_matrix_free(bench_matrix *M);
-/* b - (A + D) x, relative to |A| |x| + |b| (largest entries); f NULL = no D. */
-double bench_residual(const bench_matrix *M, const bench_flip *f, const qc_complex *b,
-                      const qc_complex *x);
-void bench_random_vector(int64_t n, qc_complex *x);
-
-/* --- quality.c: what an ordering costs, without any clock ------------------------------------- */
-
-typedef struct bench_quality {
-    double nnz, flops; /* of L; real operations of the complex factorisation                      */
-    double touched;    /* entries of L on the path of a flip, mean over all edges */
-} bench_quality;
-bench_quality bench_order_quality(qc_ctx *ctx, const bench_matrix *M, const int32_t *perm);
+#include "tests/bench/common/common.h"
 
 /* --- peers ------------------------------------------------------------------------------------ */
 
@@ -83,7 +39,7 @@ extern const bench_peer peer_mumps;
 void order_quadcover(const bench_matrix *M, int ordering, int32_t *perm);
 void order_metis(const bench_matrix *M, int32_t *perm);
 
-/* --- clock.c, measure.c: clocks and interleaving ---------------------------------------------- */
+/* --- measure.c: operations and interleaving -------------------------------------------------- */
 
 enum {
     OP_ANALYZE,
@@ -97,18 +53,6 @@ enum {
     OP_CARRY,
     OP_COUNT
 };
-
-/* Seconds; cpu is that of the calling thread. */
-typedef struct bench_duration {
-    double wall, cpu;
-} bench_duration;
-typedef struct bench_samples {
-    int32_t n, capacity;
-    bench_duration *value;
-} bench_samples;
-bench_duration bench_clock(void);
-void bench_sample(bench_samples *s, bench_duration d);
-bench_duration bench_median(const bench_samples *s);
 
 typedef struct bench_runner {
     const char *label;
@@ -234,16 +178,5 @@ typedef struct bench_arguments {
 bench_arguments bench_parse(int argc, char **argv);
 void bench_arguments_clear(bench_arguments *a);
 bench_effort bench_arguments_effort(const bench_arguments *a);
-
-/* --- main.c ----------------------------------------------------------------------------------- */
-
-#if defined(__GNUC__)
-__attribute__((noreturn, format(printf, 1, 2)))
-#endif
-void bench_die(const char *format, ...);
-/* Ends the program with the context's message. */
-void bench_check(qc_ctx *ctx, qc_status status);
-void *bench_alloc(size_t count, size_t size);
-#define NEW(T, count) ((T *)bench_alloc((size_t)(count), sizeof(T)))
 
 #endif

@@ -1,8 +1,7 @@
 /* bench_sparse: qc/sparse.h against CHOLMOD, CXSparse, METIS and MUMPS on the matrices of qc.hodge.
- * Services of the other files, and the meshes one after the other. */
+ * The meshes one after the other. */
 #include "bench.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,26 +9,7 @@
 
 #include "test_data.h"
 
-void bench_die(const char *format, ...) {
-    va_list list;
-    va_start(list, format);
-    fputs("bench_sparse: ", stderr);
-    vfprintf(stderr, format, list);
-    fputc('\n', stderr);
-    va_end(list);
-    exit(1);
-}
-
-void bench_check(qc_ctx *ctx, qc_status status) {
-    if (status != QC_OK)
-        bench_die("%s: %s", qc_status_name(status), ctx ? qc_ctx_error(ctx)->text : "no context");
-}
-
-void *bench_alloc(size_t count, size_t size) {
-    void *p = calloc(count ? count : 1, size);
-    if (!p) bench_die("no memory");
-    return p;
-}
+const char *const bench_program = "bench_sparse";
 
 /* OpenMP (in CHOLMOD) and OpenBLAS read their number of threads when they are loaded. */
 static void one_thread_in_peers(char **argv) {
@@ -49,6 +29,8 @@ static void one_thread_in_peers(char **argv) {
 static const char *const standard[] = {"bunny.off",       "rocker-arm.obj",  "stanford-bunny.obj",
                                        "armadillo.obj:0", "armadillo.obj:1", "armadillo.obj:2"};
 enum { STANDARD = sizeof standard / sizeof *standard };
+/* Density the fields are made for. */
+static const double QUADS = 10000;
 
 static int32_t count_meshes(const bench_arguments *a) {
     int32_t count = 0;
@@ -87,7 +69,8 @@ static bool compare_mesh(qc_ctx *ctx, const bench_arguments *a, int32_t i, const
     char *colon = strrchr(path, ':');
     const int32_t levels = colon ? atoi(colon + 1) : 0;
     if (colon) *colon = 0;
-    qc_matching *matching = bench_surface(ctx, file ? path : NULL, levels, a->cache);
+    const bench_source source = {file ? path : NULL, QUADS, levels, a->cache};
+    qc_matching *matching = bench_surface(ctx, &source);
     const int32_t faces = matching->field->mesh->n_faces;
     bench_matrix *M =
         bench_make_matrix(ctx, name, matching, a->flips ? a->flips : flips_for(faces));

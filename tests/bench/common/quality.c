@@ -1,6 +1,6 @@
 /* What an ordering costs: entries of L and operations (column counts of Gilbert, Ng, Peyton 1994),
  * and the entries of L on the path of the elimination tree which a flip changes. */
-#include "bench.h"
+#include "tests/bench/common/common.h"
 
 #include <stdlib.h>
 

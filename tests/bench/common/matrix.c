@@ -1,7 +1,7 @@
 /* The matrix of qc.hodge, L* of Kaelberer 2013 (3.7), and the rank-2 changes by which a matching
  * flip (6.2.1) changes it: D(k,l) = (i - 1) A(k,l), D(k,m) = (i - 1) A(k,m) for the three edges k,
  * l, m of a face. */
-#include "bench.h"
+#include "tests/bench/common/common.h"
 
 #include <math.h>
 #include <stdio.h>

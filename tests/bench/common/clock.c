@@ -1,5 +1,5 @@
 /* Clocks, samples and their medians. */
-#include "bench.h"
+#include "tests/bench/common/common.h"
 
 #include <stdlib.h>
 #include <time.h>

@@ -1,9 +1,11 @@
 /* Simulated annealing with single steps in a reduced basis: the reference, slow. */
-#include "tests/bench/lattice/bench.h"
+#include "tests/bench/thesis/thesis.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "sdk/sparse/lattice/internal.h"
 
 static const double hot = 0.06, cold = 0.003; /* of the mean G_ii */
 
@@ -28,11 +30,11 @@ static double anneal(qc__lattice *Q, int64_t sweeps, uint64_t *state) {
     return best;
 }
 
-double bench_anneal(qc_ctx *ctx, int32_t n, const double *P, const double *t, int32_t runs,
-                    int64_t sweeps) {
+double thesis_anneal(qc_ctx *ctx, int32_t n, const double *P, const double *t, int32_t runs,
+                     int64_t sweeps) {
     const size_t N = (size_t)n, square = N * N * sizeof(double);
-    double *U = malloc(square), *G = malloc(square), *work = malloc(square);
-    double *vectors = malloc(3 * N * sizeof *vectors), best = INFINITY;
+    double *U = bench_alloc(1, square), *G = bench_alloc(1, square), *work = bench_alloc(1, square);
+    double *vectors = NEW(double, 3 * N), best = INFINITY;
     memcpy(vectors, t, N * sizeof *t);
     qc__lattice_basis B = {n, U, G, vectors, 0, INT64_MAX};
     bench_check(ctx, qc__lattice_reduce(ctx, &B, P, work));

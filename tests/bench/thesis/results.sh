@@ -1,0 +1,17 @@
+#!/bin/sh
+# results.sh BIN PAGE FIGURES [PART ...]: rewrites the parts of docs/results.md, all by default: those of
+# `bench_thesis --list` and acceptance. BIN is the folder of the programs.
+set -eu
+bin=$1 page=$2 figures=$3
+shift 3
+here=$(dirname "$0")
+[ $# -gt 0 ] || set -- $("$bin/bench_thesis" --list | cut -d' ' -f1) acceptance
+mkdir -p "$figures"
+for part in "$@"; do
+    echo "results: $part" >&2
+    case $part in
+    acceptance) set -- python3 "$here/../acceptance/acceptance.py" --program "$bin/quadcover" --markdown ;;
+    *) set -- "$bin/bench_thesis" --figures "$figures" "$part" ;;
+    esac
+    sh "$here/../common/page.sh" "$page" "$part" "$@"
+done
