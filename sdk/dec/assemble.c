@@ -3,7 +3,7 @@
 #include "sdk/dec/assemble.h"
 
 typedef struct assembly {
-    const qc_mesh *mesh;
+    int32_t n_faces;
     const double *cotangent;
     const int32_t *entity, *unknown;
     const int8_t *turn;
@@ -36,7 +36,7 @@ static bool coupling(const assembly *a, int32_t t, int k, int32_t *row, int32_t 
 
 static void add_diagonal(assembly *a) {
     for (int32_t i = 0; i < a->n; i++) a->diagonal[i] = 0;
-    for (int32_t h = 0; h < 3 * a->mesh->n_faces; h++) {
+    for (int32_t h = 0; h < 3 * a->n_faces; h++) {
         const int32_t i = a->unknown[a->entity[h]];
         if (i >= 0)
             a->diagonal[i] += a->scale * (a->cotangent[qc_next(h)] + a->cotangent[qc_prev(h)]);
@@ -47,7 +47,7 @@ static void add_diagonal(assembly *a) {
 static qc_status bucket_rows(qc_ctx *ctx, assembly *a) {
     int32_t row, col;
     qc_complex value;
-    const int32_t n_faces = a->mesh->n_faces;
+    const int32_t n_faces = a->n_faces;
     for (int32_t i = 0; i <= a->n; i++) a->start[i] = 0;
     for (int32_t t = 0; t < n_faces; t++)
         for (int k = 0; k < 3; k++)
@@ -123,9 +123,9 @@ static qc_status make_columns(qc_ctx *ctx, const assembly *a, qc_hermitian *out)
     return done ? QC_OK : QC_ERR_NOMEM;
 }
 
-qc_status qc__assemble(qc_ctx *ctx, const qc_mesh *mesh, const double *cotangent, double scale,
+qc_status qc__assemble(qc_ctx *ctx, int32_t n_faces, const double *cotangent, double scale,
                        const int32_t *entity, const int8_t *turn, int32_t n, qc_stiffness *out) {
-    assembly a = {mesh, cotangent, entity, out->unknown, turn, scale, n, NULL, NULL, NULL, NULL};
+    assembly a = {n_faces, cotangent, entity, out->unknown, turn, scale, n, NULL, NULL, NULL, NULL};
     a.start = QC__NEW(ctx, int64_t, (size_t)n + 1);
     a.diagonal = QC__NEW(ctx, double, n);
     qc_status status = a.start && a.diagonal ? bucket_rows(ctx, &a) : QC_ERR_NOMEM;

@@ -87,7 +87,7 @@ qc_status qc_stiffness_edges(qc_ctx *ctx, const qc_cover *cover, const double *c
     if (status == QC_OK) {
         for (int32_t h = 0; h < 3 * m->n_faces; h++)
             turn[h] = (int8_t)(qc__edge_turn(cover, h) & 3);
-        status = qc__assemble(ctx, m, cotangent, 2, m->halfedge_edge, turn, n, s);
+        status = qc__assemble(ctx, m->n_faces, cotangent, 2, m->halfedge_edge, turn, n, s);
     }
     qc__free(turn);
     if (status != QC_OK)
@@ -108,7 +108,8 @@ qc_status qc_stiffness_vertices(qc_ctx *ctx, const qc_cover *cover, const double
         s->unknown = QC__NEW(ctx, int32_t, m->n_vertices);
         status = s->unknown ? number_vertices(ctx, cover, pinned, s->unknown, &n) : QC_ERR_NOMEM;
     }
-    if (status == QC_OK) status = qc__assemble(ctx, m, cotangent, 0.5, m->face_vertex, turn, n, s);
+    if (status == QC_OK)
+        status = qc__assemble(ctx, m->n_faces, cotangent, 0.5, m->face_vertex, turn, n, s);
     qc__free(turn);
     if (status != QC_OK)
         qc_stiffness_free(s);

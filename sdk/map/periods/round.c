@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum {
-    LARGEST_PERIOD_MATRIX = 2000, /* complex variables; beyond it periods are rounded directly */
+    LARGEST_PERIOD_MATRIX = 4000, /* variables; beyond it periods are rounded directly */
     DENSITY_ROUNDS = 24,
     NEWTON_ROUNDS = 5,   /* of these; then scales about the best are scanned */
     WINDING_ROUNDS = 13, /* in so many, cones which wind wrong are a reason to go on */
@@ -30,10 +30,13 @@ typedef struct rounding {
     qc__seams *seams;
     qc__periods *periods;
     qc__separation *separation;
-    double *P; /* (2 n)^2, NULL = direct rounding only                               */
-    double _Complex *period; /* n: real-valued periods in lattice units */
-    double _Complex *gap; /* n: rounded minus scaled periods                                    */
-    double *target, *rounded; /* 2 n */
+    double *P;                       /* n^2, NULL = direct rounding only */
+    double *period;                  /* n: real-valued periods in lattice units */
+    double *gap;                     /* n: rounded minus scaled periods */
+    double *target, *rounded;        /* n */
+    double *symbol;                  /* n_symbols */
+    double _Complex *wedge;          /* n_wedges */
+    double _Complex *F, *correction; /* n_vertices: unknown coordinates of f, and what is added */
     qc_complex *f; /* 3 n_faces: the shifted seamless map                                */
     qc_complex *trial, *best; /* 3 n_faces */
     double best_scale, best_miss, harmonic, harmonic_direct;
@@ -46,49 +49,14 @@ typedef struct rounding {
 
 /* --- periods of the seamless map -------------------------------------------------------------- */
 
-/* Value of a symbol in the map: the position of a cone, or the translation across a segment. */
-static double _Complex measure_symbol(const rounding *r, int32_t symbol, const int32_t *some_edge) {
+/* The unknown coordinates of f. */
+static void read_unknowns(rounding *r) {
     const qc__seams *s = r->seams;
-    const qc_mesh *mesh = r->mesh;
-    if (symbol >= s->n_segments) {
-        const int32_t v = s->cone_vertex[symbol - s->n_segments];
-        int32_t c = mesh->vertex_corner[v];
-        while (s->corner_wedge[c] != s->vertex_wedge[v]) c = qc_corner_ccw(mesh, c);
-        return qc__complex(r->f[c]);
+    for (int32_t v = 0; v < r->mesh->n_vertices; v++) {
+        const double _Complex F = qc__seams_value_at(s, r->f, v);
+        r->F[v] = (qc__seams_is_given(s, v, 0) ? 0 : creal(F)) +
+                  (qc__seams_is_given(s, v, 1) ? 0 : cimag(F)) * I;
     }
-    const int32_t left = s->edge_left[some_edge[symbol]], right = mesh->twin[left];
-    const double _Complex from = qc__complex(r->f[qc_next(left)]);
-    return qc__complex(r->f[qc_prev(right)]) - qc__turn(from, s->segment_turn[symbol]);
-}
-
-/* Shifts each component so that its fixed symbol is zero, then reads the free variables. */
-static qc_status read_periods(rounding *r) {
-    const qc__seams *s = r->seams;
-    const qc_mesh *mesh = r->mesh;
-    int32_t *some_edge = QC__NEW(r->ctx, int32_t, s->n_segments);
-    double _Complex *shift = QC__ZERO(r->ctx, double _Complex, mesh->n_components);
-    qc_status status = some_edge && shift ? QC_OK : QC_ERR_NOMEM;
-    if (status == QC_OK) {
-        for (int32_t e = 0; e < mesh->n_edges; e++)
-            if (s->edge_segment[e] >= 0) some_edge[s->edge_segment[e]] = e;
-        for (int32_t c = 0; c < mesh->n_components; c++) {
-            const int32_t fixed = s->fixed_symbol[c];
-            if (fixed >= 0)
-                shift[c] = -measure_symbol(r, fixed, some_edge) / qc__seams_shift(s, fixed);
-        }
-        for (int64_t c = 0; c < 3 * (int64_t)mesh->n_faces; c++) {
-            const double _Complex w = shift[mesh->face_component[c / 3]];
-            r->f[c].re += creal(w);
-            r->f[c].im += cimag(w);
-        }
-        for (int32_t j = 0; j < s->n_free; j++) {
-            const int32_t symbol = s->free_symbol[j];
-            r->period[j] = measure_symbol(r, symbol, some_edge) / s->scale[symbol];
-        }
-    }
-    qc__free(some_edge);
-    qc__free(shift);
-    return status;
 }
 
 /* --- one trial -------------------------------------------------------------------------------- */
@@ -115,16 +83,13 @@ static double dirichlet_energy(const rounding *r, const qc_complex *f) {
 }
 
 static void scale_targets(rounding *r, double scale) {
-    for (int32_t j = 0; j < r->seams->n_free; j++) {
-        r->target[2 * j] = scale * creal(r->period[j]);
-        r->target[2 * j + 1] = scale * cimag(r->period[j]);
-    }
+    for (int32_t j = 0; j < r->seams->n_free; j++) r->target[j] = scale * r->period[j];
 }
 
 /* Less than the default where the rest of the stage is quick; other seeds search longer, since
  * small problems are solved from any. */
 static int64_t search_budget(const rounding *r) {
-    const int64_t n = 2 * (int64_t)r->seams->n_free, standard = 1000 * (n < 500 ? n : 500);
+    const int64_t n = r->seams->n_free, standard = 1000 * (n < 500 ? n : 500);
     const double share = search_share * r->mesh->n_faces * (1 + (double)(r->options.seed % 4));
     return share < (double)standard ? (int64_t)share * n : -1;
 }
@@ -143,30 +108,42 @@ static qc_status round_periods(rounding *r, qc_lattice_result *result) {
             options.budget = 0;
         }
         qc_status status =
-            qc_lattice_round(r->ctx, 2 * n, r->P, r->target, &options, r->rounded, result);
+            qc_lattice_round(r->ctx, n, r->P, r->target, &options, r->rounded, result);
         if (status == QC_OK)
             status = qc__separate(r->ctx, r->separation, n, r->P, r->target, r->rounded,
                                   &result->energy, &r->collisions);
         if (status != QC_OK) return status;
     } else {
-        for (int32_t j = 0; j < 2 * n; j++) r->rounded[j] = rint(r->target[j]);
+        for (int32_t j = 0; j < n; j++) r->rounded[j] = rint(r->target[j]);
     }
-    for (int32_t j = 0; j < n; j++)
-        r->gap[j] = r->rounded[2 * j] - r->target[2 * j] +
-                    (r->rounded[2 * j + 1] - r->target[2 * j + 1]) * I;
+    for (int32_t j = 0; j < n; j++) r->gap[j] = r->rounded[j] - r->target[j];
     return QC_OK;
+}
+
+/* The harmonic map with the periods of the gap: values in the wedges, and at vertices. */
+static qc_status solve_gap(rounding *r) {
+    qc__seams_symbol_values(r->seams, r->gap, r->symbol);
+    qc__seams_wedge_values(r->seams, r->symbol, r->wedge);
+    return qc__periods_extend(r->ctx, r->periods, r->wedge, r->correction);
 }
 
 /* Energy of the harmonic map which direct rounding would add; the trial map serves as space. */
 static qc_status energy_of_direct_rounding(rounding *r, double *energy) {
-    const int32_t n = r->seams->n_free;
-    for (int32_t j = 0; j < n; j++)
-        r->gap[j] = rint(r->target[2 * j]) - r->target[2 * j] +
-                    (rint(r->target[2 * j + 1]) - r->target[2 * j + 1]) * I;
-    memset(r->trial, 0, sizeof *r->trial * 3 * (size_t)r->mesh->n_faces);
-    const qc_status status = qc__periods_add_map(r->ctx, r->periods, r->gap, r->trial);
-    if (status == QC_OK) *energy = dirichlet_energy(r, r->trial);
-    return status;
+    for (int32_t j = 0; j < r->seams->n_free; j++) r->gap[j] = rint(r->target[j]) - r->target[j];
+    const qc_status status = solve_gap(r);
+    if (status != QC_OK) return status;
+    qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
+    *energy = dirichlet_energy(r, r->trial);
+    return QC_OK;
+}
+
+/* The map with the rounded periods: what is given is exact, the rest is scale f plus the harmonic
+ * correction. */
+static void write_trial(rounding *r, double scale) {
+    for (int32_t v = 0; v < r->mesh->n_vertices; v++) r->correction[v] += scale * r->F[v];
+    qc__seams_symbol_values(r->seams, r->rounded, r->symbol);
+    qc__seams_wedge_values(r->seams, r->symbol, r->wedge);
+    qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
 }
 
 /* Whether the trial beats the best map so far: a number of quads which is good enough, then cones
@@ -182,27 +159,26 @@ static bool is_better(const rounding *r, double miss) {
 /* The rounded map at a scale; unless coarse, keeps it when it is nearer to the wanted number of
  * quads. */
 static qc_status try_scale(rounding *r, double scale, double wanted, double *quads) {
-    const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
     qc_lattice_result result = {0};
     const bool weighted = r->P && r->seamless->weight; /* then P measures in another norm */
+    const bool measured = !r->P || weighted;
     qc_status status = QC_OK;
-    memset(r->trial, 0, sizeof *r->trial * (size_t)n_corners);
+    memset(r->correction, 0, sizeof *r->correction * (size_t)r->mesh->n_vertices);
     if (r->seams->n_free > 0) {
         double direct = 0;
         scale_targets(r, scale);
         if (weighted) status = energy_of_direct_rounding(r, &direct);
         if (status == QC_OK) status = round_periods(r, &result);
+        if (status == QC_OK) status = solve_gap(r);
         if (weighted) result.energy_direct = direct;
-        memset(r->trial, 0, sizeof *r->trial * (size_t)n_corners);
-        if (status == QC_OK) status = qc__periods_add_map(r->ctx, r->periods, r->gap, r->trial);
     }
     if (status != QC_OK) return status;
-    if (!r->P || weighted) result.energy = dirichlet_energy(r, r->trial);
-    if (!r->P) result.energy_direct = result.energy;
-    for (int64_t c = 0; c < n_corners; c++) {
-        r->trial[c].re += scale * r->f[c].re;
-        r->trial[c].im += scale * r->f[c].im;
+    if (measured && r->seams->n_free > 0) {
+        qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
+        result.energy = dirichlet_energy(r, r->trial);
     }
+    if (!r->P) result.energy_direct = result.energy;
+    write_trial(r, scale);
     r->moves += result.moves;
     r->evaluations += result.evaluations;
     *quads = signed_area(r->trial, r->mesh->n_faces);
@@ -279,15 +255,21 @@ static qc_status prepare(rounding *r) {
     if (status == QC_OK) status = qc__seams_solve(r->ctx, r->seams, r->options.lattice);
     if (status != QC_OK) return status;
     const int64_t n = r->seams->n_free;
-    r->period = QC__NEW(r->ctx, double _Complex, n);
-    r->gap = QC__NEW(r->ctx, double _Complex, n);
-    r->target = QC__NEW(r->ctx, double, 2 * n);
-    r->rounded = QC__NEW(r->ctx, double, 2 * n);
-    if (!r->period || !r->gap || !r->target || !r->rounded) return QC_ERR_NOMEM;
-    status = read_periods(r);
+    r->period = QC__NEW(r->ctx, double, n);
+    r->gap = QC__NEW(r->ctx, double, n);
+    r->target = QC__NEW(r->ctx, double, n);
+    r->rounded = QC__NEW(r->ctx, double, n);
+    r->symbol = QC__NEW(r->ctx, double, qc__seams_symbols(r->seams));
+    r->wedge = QC__NEW(r->ctx, double _Complex, r->seams->n_wedges);
+    r->F = QC__NEW(r->ctx, double _Complex, r->mesh->n_vertices);
+    r->correction = QC__NEW(r->ctx, double _Complex, r->mesh->n_vertices);
+    if (!r->period || !r->gap || !r->target || !r->rounded || !r->symbol || !r->wedge || !r->F ||
+        !r->correction)
+        return QC_ERR_NOMEM;
+    status = qc__seams_read(r->ctx, r->seams, r->f, r->period);
+    if (status == QC_OK) read_unknowns(r);
     if (status == QC_OK && n > 0)
-        status = qc__periods_create(r->ctx, &cover, r->seams, r->cotangent, seamless->face_turn,
-                                    r->options.solver, &r->periods);
+        status = qc__periods_create(r->ctx, r->seams, r->cotangent, r->options.solver, &r->periods);
     return status;
 }
 
@@ -300,7 +282,7 @@ static qc_status make_period_matrix(rounding *r) {
                 (long long)n);
         return QC_OK;
     }
-    r->P = QC__NEW(r->ctx, double, 4 * n * n);
+    r->P = QC__NEW(r->ctx, double, n *n);
     if (!r->P) return QC_ERR_NOMEM;
     const qc__range outer = qc__range_begin(r->ctx, NULL, 0.2, 0.7);
     const qc_status status = qc__period_matrix(r->ctx, r->periods, r->P);
@@ -394,8 +376,8 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
     qc__separation_free(r.separation);
     qc__periods_free(r.periods);
     qc__seams_free(r.seams);
-    void *const blocks[] = {r.cotangent, r.f,   r.trial,  r.best,   r.P,
-                            r.period,    r.gap, r.target, r.rounded};
+    void *const blocks[] = {r.cotangent, r.f,       r.trial,  r.best,  r.P, r.period,    r.gap,
+                            r.target,    r.rounded, r.symbol, r.wedge, r.F, r.correction};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

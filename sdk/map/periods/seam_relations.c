@@ -1,95 +1,43 @@
-/* Free variables of a map with seams: integer elimination of the node relations (see seams.h).
+/* Free variables of a map with seams: the relations between its symbols, solved over the integers
+ * (see seams.h, relations.h).
  *
  * Relation at interior node n with turning R_n: sum_j i^{b_j} tau_j = (1 - i^{R_n}) p_n, every
  * translation with a unit coefficient. A spanning forest of the graph of nodes and segments, rooted
- * at the boundary where there is one, solves all relations but one a closed component: the
- * translation of the edge to the parent follows from those of the children, the other segments and
- * p_n without division. In the root's relation all coefficients are units times powers of (1 + i),
- * so the variable with the smallest power is an integer combination of the others. Last, a global
- * shift sets one variable to zero. What remains are 2g + b - 2 complex variables on a closed
- * surface with b cones, (4.1). */
-#include "sdk/map/periods/seams.h"
+ * at the boundary where there is one, tells a good order: leaves first, each giving the translation
+ * of the edge to its parent. What is left are the roots of closed components. Last, a global shift
+ * sets up to two variables a component to zero. What remains are 2 (2g + b - 2) variables on a
+ * closed surface with b cones, (4.1). */
 #include <math.h>
 #include <string.h>
-
-typedef struct term {
-    int32_t symbol;
-    double _Complex value;
-} term;
-
-typedef struct row {
-    int64_t start;
-    int32_t n;
-} row;
+#include "sdk/map/periods/seams.h"
 
 typedef struct solver {
     qc_ctx *ctx;
     qc__seams *s;
-    int32_t n_symbols;
+    int32_t lattice;
+    qc__relations *relations;
     int32_t *vertex_node;    /* node of an interior node vertex, -1 */
     int64_t *incident_start; /* segments at each vertex that ends one */
     int32_t *incident;
     int32_t *order, n_order; /* vertices of the forest, roots first */
     int32_t *parent_segment; /* n_vertices, -1 = root or unvisited */
     uint8_t *visited;
-    row *rows; /* of dependent translations; n = -1: independent */
-    term *terms;
-    int64_t n_terms, capacity;
-    double _Complex *sum; /* dense accumulator over the symbols ... */
-    uint8_t *in_sum;
-    int32_t *touched, n_touched;
-    int32_t *dependent; /* n_components: symbol given by the root's relation, -1 */
+    int32_t *symbol; /* one relation */
+    int64_t *value;
+    int32_t n_values;
 } solver;
 
 int32_t qc__seams_component(const qc__seams *s, int32_t symbol) {
-    const int32_t v = symbol < s->n_segments ? s->segment_node[2 * symbol]
-                                             : s->cone_vertex[symbol - s->n_segments];
+    const int32_t j = symbol / 2;
+    const int32_t v =
+        j < s->n_segments ? s->segment_node[2 * (int64_t)j] : s->cone_vertex[j - s->n_segments];
     return s->mesh->face_component[s->mesh->vertex_corner[v] / 3];
 }
 
-/* --- sums of rows ----------------------------------------------------------------------------- */
-
-static void sum_add(solver *q, int32_t symbol, double _Complex value) {
-    if (!q->in_sum[symbol]) {
-        q->in_sum[symbol] = 1;
-        q->sum[symbol] = 0;
-        q->touched[q->n_touched++] = symbol;
-    }
-    q->sum[symbol] += value;
-}
-
-static void sum_add_symbol(solver *q, int32_t symbol, double _Complex value) {
-    const row r = q->rows[symbol];
-    if (r.n < 0) {
-        sum_add(q, symbol, value);
-        return;
-    }
-    for (int32_t i = 0; i < r.n; i++)
-        sum_add(q, q->terms[r.start + i].symbol, value * q->terms[r.start + i].value);
-}
-
-static void sum_clear(solver *q) {
-    for (int32_t i = 0; i < q->n_touched; i++) q->in_sum[q->touched[i]] = 0;
-    q->n_touched = 0;
-}
-
-/* Stores factor * sum, without `skip`, as the row of `symbol`. Coefficients are Gaussian
- * (half-)integers of small size, so sums which vanish do so exactly. */
-static bool sum_store(solver *q, int32_t symbol, double _Complex factor, int32_t skip) {
-    if (!qc__reserve(q->ctx, (void **)&q->terms, &q->capacity, q->n_terms + q->n_touched,
-                     sizeof(term)))
-        return false;
-    row r = {q->n_terms, 0};
-    for (int32_t i = 0; i < q->n_touched; i++) {
-        const int32_t j = q->touched[i];
-        const double _Complex value = q->sum[j];
-        if (j == skip || (creal(value) == 0 && cimag(value) == 0)) continue;
-        q->terms[q->n_terms++] = (term){j, factor * value};
-        r.n++;
-    }
-    q->rows[symbol] = r;
-    sum_clear(q);
-    return true;
+double qc__seams_shift(const qc__seams *s, int32_t symbol, double _Complex w) {
+    const int32_t j = symbol / 2;
+    const double _Complex change = j < s->n_segments ? w - qc__turn(w, s->segment_turn[j]) : w;
+    return symbol % 2 ? cimag(change) : creal(change);
 }
 
 /* --- the forest ------------------------------------------------------------------------------- */
@@ -156,177 +104,209 @@ static void grow_forest(solver *q) {
         }
 }
 
-/* --- elimination ------------------------------------------------------------------------------ */
+/* --- relations -------------------------------------------------------------------------------- */
 
-/* sum := relation of node n (translations minus (1 - i^R) p), all but the given segment. Returns
- * the coefficient of that segment. */
-static double _Complex sum_relation(solver *q, int32_t n, int32_t without) {
+/* Symbols are integers times 1/2, 1 or 2 (4.2.2): the position of a cone is a multiple of 1/2 where
+ * translations may be any integers, and translations are even where that is asked for. Which of
+ * these multiples can be is left to the relations. */
+static int64_t twice_unit(const qc__seams *s, int32_t lattice, int32_t symbol) {
+    const int32_t j = symbol / 2;
+    if (j < s->n_segments) return lattice == QC_LATTICE_EVEN ? 4 : 2;
+    return lattice == QC_LATTICE_INTEGER && s->cone_turn[j - s->n_segments] != 0 ? 1 : 2;
+}
+
+/* Part `part` of value * i^turn * the symbols 2 j, 2 j + 1. */
+static void append(solver *q, int32_t j, int32_t turn, int32_t part, int64_t value) {
+    const int32_t symbol = 2 * j + ((part + turn) & 1);
+    const double _Complex unit = qc__turn(symbol % 2 ? I : 1.0, turn);
+    const int64_t sign = (part == 0 ? creal(unit) : cimag(unit)) < 0 ? -1 : 1;
+    q->symbol[q->n_values] = symbol;
+    q->value[q->n_values++] = sign * value * twice_unit(q->s, q->lattice, symbol);
+}
+
+/* One part of the relation of node n. */
+static qc_status add_closing(solver *q, int32_t n, int32_t part, int32_t prefer, int32_t *pivot) {
     const qc__seams *s = q->s;
-    double _Complex left_out = 0;
-    for (int64_t i = s->relation_start[n]; i < s->relation_start[n + 1]; i++) {
-        const double _Complex unit = qc__turn(1.0, s->relation_turn[i]);
-        if (s->relation_symbol[i] == without)
-            left_out += unit;
-        else
-            sum_add_symbol(q, s->relation_symbol[i], unit);
-    }
     const int32_t cone = s->vertex_cone[s->node_vertex[n]];
-    if (cone >= 0) sum_add(q, s->n_segments + cone, qc__turn(1.0, s->cone_turn[cone]) - 1.0);
-    return left_out;
-}
-
-static qc_status eliminate_forest(solver *q) {
-    for (int32_t at = q->n_order - 1; at >= 0; at--) {
-        const int32_t v = q->order[at], k = q->parent_segment[v];
-        if (k < 0) continue;
-        const double _Complex unit = sum_relation(q, q->vertex_node[v], k);
-        if (!sum_store(q, k, -conj(unit), -1)) return QC_ERR_NOMEM;
+    q->n_values = 0;
+    for (int64_t i = s->closing_start[n]; i < s->closing_start[n + 1]; i++)
+        append(q, s->closing_segment[i], s->closing_turn[i], part, 1);
+    if (cone >= 0) {
+        append(q, s->n_segments + cone, s->cone_turn[cone], part, 1);
+        append(q, s->n_segments + cone, 0, part, -1);
     }
-    return QC_OK;
+    return qc__relations_add(q->ctx, q->relations, q->n_values, q->symbol, q->value, prefer, pivot);
 }
 
-static double norm2(double _Complex z) {
-    return creal(z) * creal(z) + cimag(z) * cimag(z);
+/* Symbol of segment k which the relation of node n has in one part. */
+static int32_t symbol_of_segment(const qc__seams *s, int32_t n, int32_t k, int32_t part) {
+    for (int64_t i = s->closing_start[n]; i < s->closing_start[n + 1]; i++)
+        if (s->closing_segment[i] == k)
+            return qc__translation_symbol(k, (part + s->closing_turn[i]) & 1);
+    return -1;
 }
 
-/* The relation left over at the root of a closed component gives one variable by the others: the
- * one whose coefficient, on the lattice, has the smallest power of 1 + i, i.e. the smallest norm.
- */
-static qc_status eliminate_roots(solver *q) {
+/* Leaves give the translation to their parent; roots of closed components any symbol, both parts of
+ * one where that can be. */
+static qc_status add_closings(solver *q) {
     const qc__seams *s = q->s;
-    for (int32_t at = 0; at < q->n_order; at++) {
-        const int32_t v = q->order[at], n = q->vertex_node[v];
-        if (q->parent_segment[v] >= 0 || n < 0) continue;
-        sum_relation(q, n, -1);
-        int32_t best = -1;
-        double smallest = 0;
-        for (int32_t i = 0; i < q->n_touched; i++) {
-            const int32_t j = q->touched[i];
-            const double norm = norm2(q->sum[j] * s->scale[j]);
-            if (norm == 0) continue;
-            if (best < 0 || norm < smallest || (norm == smallest && j > best)) {
-                best = j;
-                smallest = norm;
-            }
-        }
-        if (best < 0) {
-            sum_clear(q);
-            continue;
-        }
-        q->dependent[qc__seams_component(s, best)] = best;
-        if (!sum_store(q, best, -1.0 / q->sum[best], best)) return QC_ERR_NOMEM;
-    }
-    return QC_OK;
-}
-
-/* Lattice of each symbol (4.2.2). */
-static void choose_scales(qc__seams *s, int32_t lattice) {
-    for (int32_t j = 0; j < qc__seams_symbols(s); j++) {
-        double _Complex scale = 1.0;
-        const bool is_cone = j >= s->n_segments;
-        const int32_t turn = is_cone ? s->cone_turn[j - s->n_segments] : 0;
-        if (lattice == QC_LATTICE_INTEGER && turn != 0) scale = 1.0 / (1.0 - qc__turn(1.0, turn));
-        if (lattice == QC_LATTICE_EVEN) scale = !is_cone ? 2.0 : turn % 2 ? 1.0 + I : 1.0;
-        s->scale[j] = scale;
-    }
-}
-
-/* One variable a component which a global shift can set to zero: the one whose lattice is coarsest
- * in units of its response to the shift. */
-static void choose_fixed(solver *q) {
-    qc__seams *s = q->s;
-    for (int32_t c = 0; c < s->mesh->n_components; c++) s->fixed_symbol[c] = -1;
-    for (int32_t j = q->n_symbols - 1; j >= 0; j--) {
-        const double response = norm2(qc__seams_shift(s, j) / s->scale[j]);
-        if (q->rows[j].n >= 0 || response == 0) continue;
-        int32_t *fixed = &s->fixed_symbol[qc__seams_component(s, j)];
-        const double best =
-            *fixed < 0 ? INFINITY : norm2(qc__seams_shift(s, *fixed) / s->scale[*fixed]);
-        if (response < best) *fixed = j;
-    }
-}
-
-/* Final rows: independent symbols stand for themselves, the dependent symbol of a root is expanded,
- * fixed symbols are dropped, and coefficients are multiplied by the scales. */
-static qc_status write_rows(solver *q) {
-    qc__seams *s = q->s;
-    int32_t *number = QC__NEW(q->ctx, int32_t, q->n_symbols);
-    s->free_symbol = QC__NEW(q->ctx, int32_t, q->n_symbols);
-    s->row_start = QC__NEW(q->ctx, int64_t, q->n_symbols + 1);
-    if (!number || !s->free_symbol || !s->row_start) {
-        qc__free(number);
-        return QC_ERR_NOMEM;
-    }
-    s->n_free = 0;
-    for (int32_t j = 0; j < q->n_symbols; j++) {
-        const bool is_free = q->rows[j].n < 0 && s->fixed_symbol[qc__seams_component(s, j)] != j;
-        number[j] = is_free ? s->n_free : -1;
-        if (is_free) s->free_symbol[s->n_free++] = j;
-    }
-    int64_t n = 0, free_capacity = 0, value_capacity = 0;
+    int64_t most = 0;
+    for (int32_t n = 0; n < s->n_nodes; n++)
+        if (s->closing_start[n + 1] - s->closing_start[n] > most)
+            most = s->closing_start[n + 1] - s->closing_start[n];
+    q->symbol = QC__NEW(q->ctx, int32_t, most + 2);
+    q->value = QC__NEW(q->ctx, int64_t, most + 2);
+    if (!q->symbol || !q->value) return QC_ERR_NOMEM;
     qc_status status = QC_OK;
-    for (int32_t j = 0; j < q->n_symbols && status == QC_OK; j++) {
-        s->row_start[j] = n;
-        const row r = q->rows[j];
-        const int32_t dependent = q->dependent[qc__seams_component(s, j)];
-        if (r.n < 0) sum_add(q, j, 1.0);
-        for (int32_t i = 0; i < r.n; i++) {
-            const term t = q->terms[r.start + i];
-            if (t.symbol == dependent && j != dependent)
-                sum_add_symbol(q, dependent, t.value);
-            else
-                sum_add(q, t.symbol, t.value);
+    for (int32_t at = q->n_order - 1; at >= 0 && status == QC_OK; at--) {
+        const int32_t v = q->order[at], n = q->vertex_node[v], k = q->parent_segment[v];
+        int32_t pivot = -1;
+        for (int32_t part = 0; part < 2 && n >= 0 && status == QC_OK; part++) {
+            const int32_t prefer = k >= 0       ? symbol_of_segment(s, n, k, part)
+                                   : pivot >= 0 ? pivot ^ 1
+                                                : -1;
+            status = add_closing(q, n, part, prefer, &pivot);
         }
-        if (!qc__reserve(q->ctx, (void **)&s->row_free, &free_capacity, n + q->n_touched,
-                         sizeof *s->row_free) ||
-            !qc__reserve(q->ctx, (void **)&s->row_value, &value_capacity, n + q->n_touched,
-                         sizeof *s->row_value))
-            status = QC_ERR_NOMEM;
-        for (int32_t i = 0; i < q->n_touched && status == QC_OK; i++) {
-            const int32_t f = q->touched[i];
-            if (number[f] < 0 || norm2(q->sum[f]) == 0) continue;
-            s->row_free[n] = number[f];
-            s->row_value[n++] = q->sum[f] * s->scale[f];
-        }
-        sum_clear(q);
     }
-    s->row_start[q->n_symbols] = n;
-    qc__free(number);
     return status;
 }
 
+/* --- the result ------------------------------------------------------------------------------- */
+
+/* Units go into the rows: symbols are values, free variables integers. */
+static void apply_units(const solver *q) {
+    qc__seams *s = q->s;
+    for (int32_t j = 0; j < qc__seams_symbols(s); j++)
+        for (int64_t i = s->symbol_row.start[j]; i < s->symbol_row.start[j + 1]; i++)
+            s->symbol_row.value[i] *= 0.5 * (double)twice_unit(s, q->lattice, j);
+    for (int64_t i = 0; i < s->free_row.start[s->n_free]; i++)
+        s->free_row.value[i] *= 2 / (double)twice_unit(s, q->lattice, s->free_row.column[i]);
+}
+
+double _Complex qc__seams_response(const qc__seams *s, int32_t y) {
+    double _Complex sum = 0;
+    for (int64_t i = s->free_row.start[y]; i < s->free_row.start[y + 1]; i++) {
+        const int32_t j = s->free_row.column[i];
+        sum += s->free_row.value[i] * (qc__seams_shift(s, j, 1) + qc__seams_shift(s, j, I) * I);
+    }
+    return sum;
+}
+
+/* Up to two variables a component which a global shift can set to zero, with independent responses:
+ * those whose lattice is coarsest in units of the response. */
+static qc_status choose_fixed(solver *q, uint8_t *fixed) {
+    const qc__seams *s = q->s;
+    const int32_t n = s->mesh->n_components;
+    int32_t *chosen = QC__NEW(q->ctx, int32_t, n);
+    double *least = QC__NEW(q->ctx, double, n);
+    double _Complex *first = QC__ZERO(q->ctx, double _Complex, n);
+    const bool done = chosen && least && first;
+    for (int32_t pass = 0; pass < 2 && done; pass++) {
+        for (int32_t c = 0; c < n; c++) {
+            chosen[c] = -1;
+            least[c] = INFINITY;
+        }
+        for (int32_t y = s->n_free - 1; y >= 0; y--) {
+            const int32_t c = qc__seams_component(s, s->free_row.column[s->free_row.start[y]]);
+            const double _Complex r = qc__seams_response(s, y);
+            /* passes: length; area with the first */
+            const double size = pass == 0 ? cabs(r) : fabs(cimag(conj(first[c]) * r));
+            if (fixed[y] || size == 0 || size >= least[c]) continue;
+            least[c] = size;
+            chosen[c] = y;
+        }
+        for (int32_t c = 0; c < n; c++)
+            if (chosen[c] >= 0) {
+                fixed[chosen[c]] = 1;
+                first[c] = qc__seams_response(s, chosen[c]);
+            }
+    }
+    qc__free(chosen);
+    qc__free(least);
+    qc__free(first);
+    return done ? QC_OK : QC_ERR_NOMEM;
+}
+
+/* Moves the fixed variables to the end and out of the rows of the symbols. */
+static qc_status drop_fixed(solver *q, const uint8_t *fixed) {
+    qc__seams *s = q->s;
+    const int32_t n = s->n_free;
+    int32_t *number = QC__NEW(q->ctx, int32_t, n), *old = QC__NEW(q->ctx, int32_t, n);
+    const int64_t terms = s->free_row.start[n];
+    qc__rows rows = {QC__NEW(q->ctx, int64_t, n + 1), QC__NEW(q->ctx, int32_t, terms),
+                     QC__NEW(q->ctx, double, terms)};
+    s->fixed_component = QC__NEW(q->ctx, int32_t, n);
+    if (!number || !old || !rows.start || !rows.column || !rows.value || !s->fixed_component) {
+        qc__free(number);
+        qc__free(old);
+        qc__rows_free(&rows);
+        return QC_ERR_NOMEM;
+    }
+    int32_t k = 0;
+    for (int32_t pass = 0; pass < 2; pass++) {
+        for (int32_t y = 0; y < n; y++)
+            if (fixed[y] == pass) {
+                old[k] = y;
+                number[y] = k++;
+            }
+        if (pass == 0) s->n_free = k;
+    }
+    s->n_fixed = n - s->n_free;
+    rows.start[0] = 0;
+    for (int32_t y = 0; y < n; y++) {
+        int64_t at = rows.start[y];
+        for (int64_t i = s->free_row.start[old[y]]; i < s->free_row.start[old[y] + 1]; i++) {
+            rows.column[at] = s->free_row.column[i];
+            rows.value[at++] = s->free_row.value[i];
+        }
+        rows.start[y + 1] = at;
+        if (y >= s->n_free)
+            s->fixed_component[y - s->n_free] = qc__seams_component(s, rows.column[rows.start[y]]);
+    }
+    qc__rows_free(&s->free_row);
+    s->free_row = rows;
+    int64_t kept = 0, from = 0;
+    for (int32_t j = 0; j < qc__seams_symbols(s); j++) {
+        const int64_t to = s->symbol_row.start[j + 1];
+        for (int64_t i = from; i < to; i++) {
+            const int32_t y = number[s->symbol_row.column[i]];
+            if (y >= s->n_free) continue;
+            s->symbol_row.column[kept] = y;
+            s->symbol_row.value[kept++] = s->symbol_row.value[i];
+        }
+        from = to;
+        s->symbol_row.start[j + 1] = kept;
+    }
+    qc__free(number);
+    qc__free(old);
+    return QC_OK;
+}
+
 static void solver_free(solver *q) {
-    void *const blocks[] = {
-        q->vertex_node, q->incident_start, q->incident, q->order,  q->parent_segment, q->visited,
-        q->rows,        q->terms,          q->sum,      q->in_sum, q->touched,        q->dependent};
+    void *const blocks[] = {q->vertex_node,    q->incident_start, q->incident, q->order,
+                            q->parent_segment, q->visited,        q->symbol,   q->value};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+    qc__relations_free(q->relations);
 }
 
 qc_status qc__seams_solve(qc_ctx *ctx, qc__seams *s, int32_t lattice) {
-    solver q = {.ctx = ctx, .s = s, .n_symbols = qc__seams_symbols(s)};
-    q.rows = QC__NEW(ctx, row, q.n_symbols);
-    q.sum = QC__NEW(ctx, double _Complex, q.n_symbols);
-    q.in_sum = QC__ZERO(ctx, uint8_t, q.n_symbols);
-    q.touched = QC__NEW(ctx, int32_t, q.n_symbols);
-    q.dependent = QC__NEW(ctx, int32_t, s->mesh->n_components);
-    s->scale = QC__NEW(ctx, double _Complex, q.n_symbols);
-    s->fixed_symbol = QC__NEW(ctx, int32_t, s->mesh->n_components);
+    solver q = {.ctx = ctx, .s = s, .lattice = lattice};
+    uint8_t *fixed = NULL;
     qc_status status = collect_incidence(&q);
-    if (!q.rows || !q.sum || !q.in_sum || !q.touched || !q.dependent || !s->scale ||
-        !s->fixed_symbol)
-        status = QC_ERR_NOMEM;
+    if (status == QC_OK) status = qc__relations_create(ctx, qc__seams_symbols(s), &q.relations);
     if (status == QC_OK) {
-        for (int32_t j = 0; j < q.n_symbols; j++) q.rows[j] = (row){0, -1};
-        for (int32_t c = 0; c < s->mesh->n_components; c++) q.dependent[c] = -1;
-        choose_scales(s, lattice);
         grow_forest(&q);
-        status = eliminate_forest(&q);
+        status = add_closings(&q);
     }
-    if (status == QC_OK) status = eliminate_roots(&q);
+    if (status == QC_OK)
+        status = qc__relations_solve(ctx, q.relations, &s->n_free, &s->symbol_row, &s->free_row);
     if (status == QC_OK) {
-        choose_fixed(&q);
-        status = write_rows(&q);
+        apply_units(&q);
+        fixed = QC__ZERO(ctx, uint8_t, s->n_free);
+        status = fixed ? choose_fixed(&q, fixed) : QC_ERR_NOMEM;
     }
+    if (status == QC_OK) status = drop_fixed(&q, fixed);
+    qc__free(fixed);
     solver_free(&q);
     return status;
 }

@@ -4,12 +4,14 @@
 
 void qc__seams_free(qc__seams *s) {
     if (!s) return;
-    void *const blocks[] = {s->edge_segment,  s->edge_left,   s->segment_turn,   s->segment_node,
-                            s->cone_vertex,   s->vertex_cone, s->cone_turn,      s->vertex_wedge,
-                            s->corner_wedge,  s->wedge_turn,  s->wedge_start,    s->term_symbol,
-                            s->term_turn,     s->node_vertex, s->relation_start, s->relation_symbol,
-                            s->relation_turn, s->free_symbol, s->scale,          s->row_start,
-                            s->row_free,      s->row_value,   s->fixed_symbol};
+    void *const blocks[] = {
+        s->edge_segment,    s->edge_left,      s->segment_turn, s->segment_node, s->cone_vertex,
+        s->vertex_cone,     s->cone_turn,      s->vertex_wedge, s->corner_wedge, s->wedge_turn,
+        s->wedge_start,     s->term_segment,   s->term_turn,    s->node_vertex,  s->closing_start,
+        s->closing_segment, s->closing_turn,   s->vertex_given, s->given_start,  s->given_symbol,
+        s->given_value,     s->fixed_component};
+    qc__rows_free(&s->symbol_row);
+    qc__rows_free(&s->free_row);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     qc__free(s);
 }
@@ -130,19 +132,19 @@ static qc_status trace_segments(builder *b) {
 static bool walk_reserve(qc_ctx *ctx, qc__walk *w) {
     if (w->n < w->capacity) return true;
     const int32_t capacity = w->capacity < 16 ? 16 : 2 * w->capacity;
-    int32_t *symbol = qc__realloc(ctx, w->symbol, (size_t)capacity, sizeof *symbol);
-    if (!symbol) return false;
-    w->symbol = symbol;
-    int8_t *turn = qc__realloc(ctx, w->symbol_turn, (size_t)capacity, sizeof *turn);
+    int32_t *segment = qc__realloc(ctx, w->segment, (size_t)capacity, sizeof *segment);
+    if (!segment) return false;
+    w->segment = segment;
+    int8_t *turn = qc__realloc(ctx, w->term_turn, (size_t)capacity, sizeof *turn);
     if (!turn) return false;
-    w->symbol_turn = turn;
+    w->term_turn = turn;
     w->capacity = capacity;
     return true;
 }
 
 void qc__walk_free(qc__walk *w) {
-    qc__free(w->symbol);
-    qc__free(w->symbol_turn);
+    qc__free(w->segment);
+    qc__free(w->term_turn);
     *w = (qc__walk){0};
 }
 
@@ -154,23 +156,24 @@ bool qc__walk_cross(qc_ctx *ctx, const qc__seams *s, qc__walk *w, int32_t h) {
     const int32_t turn = from_left ? s->segment_turn[k] : -s->segment_turn[k];
     if (!walk_reserve(ctx, w)) return false;
     w->turn = (w->turn + turn) & 3;
-    for (int32_t j = 0; j < w->n; j++) w->symbol_turn[j] = (int8_t)((w->symbol_turn[j] + turn) & 3);
-    w->symbol[w->n] = k;
-    w->symbol_turn[w->n++] = (int8_t)(from_left ? 0 : (turn + 2) & 3);
+    for (int32_t j = 0; j < w->n; j++) w->term_turn[j] = (int8_t)((w->term_turn[j] + turn) & 3);
+    w->segment[w->n] = k;
+    w->term_turn[w->n++] = (int8_t)(from_left ? 0 : (turn + 2) & 3);
     return true;
 }
 
-static bool append_terms(qc_ctx *ctx, const qc__walk *w, int32_t **symbol, int8_t **turn,
+static bool append_terms(qc_ctx *ctx, const qc__walk *w, int32_t **segment, int8_t **turn,
                          int64_t *n, int64_t *capacity) {
     if (*n + w->n > *capacity) {
-        int64_t symbols = *capacity, turns = *capacity;
-        if (!qc__reserve(ctx, (void **)symbol, &symbols, *n + w->n, sizeof **symbol)) return false;
-        if (!qc__reserve(ctx, (void **)turn, &turns, symbols, sizeof **turn)) return false;
-        *capacity = symbols < turns ? symbols : turns;
+        int64_t segments = *capacity, turns = *capacity;
+        if (!qc__reserve(ctx, (void **)segment, &segments, *n + w->n, sizeof **segment))
+            return false;
+        if (!qc__reserve(ctx, (void **)turn, &turns, segments, sizeof **turn)) return false;
+        *capacity = segments < turns ? segments : turns;
     }
     if (w->n > 0) {
-        memcpy(*symbol + *n, w->symbol, sizeof **symbol * (size_t)w->n);
-        memcpy(*turn + *n, w->symbol_turn, sizeof **turn * (size_t)w->n);
+        memcpy(*segment + *n, w->segment, sizeof **segment * (size_t)w->n);
+        memcpy(*turn + *n, w->term_turn, sizeof **turn * (size_t)w->n);
     }
     *n += w->n;
     return true;
@@ -190,7 +193,7 @@ static int32_t first_corner(const builder *b, int32_t v) {
 static bool walk_vertex(builder *b, int32_t v, qc__walk *w) {
     const qc_mesh *mesh = b->cover->mesh;
     qc__seams *s = b->s;
-    const int32_t start = first_corner(b, v), cone = s->vertex_cone[v];
+    const int32_t start = first_corner(b, v);
     w->turn = w->n = 0;
     int32_t c = start;
     bool fresh = true;
@@ -199,17 +202,9 @@ static bool walk_vertex(builder *b, int32_t v, qc__walk *w) {
             const int32_t at = s->n_wedges++;
             s->wedge_turn[at] = (int8_t)w->turn;
             s->wedge_start[at] = s->n_terms;
-            if (!append_terms(b->ctx, w, &s->term_symbol, &s->term_turn, &s->n_terms,
+            if (!append_terms(b->ctx, w, &s->term_segment, &s->term_turn, &s->n_terms,
                               &s->term_capacity))
                 return false;
-            if (cone >= 0) { /* F_v = p_v */
-                int32_t symbol = s->n_segments + cone;
-                int8_t turn = (int8_t)w->turn;
-                const qc__walk pole = {0, 1, 1, &symbol, &turn};
-                if (!append_terms(b->ctx, &pole, &s->term_symbol, &s->term_turn, &s->n_terms,
-                                  &s->term_capacity))
-                    return false;
-            }
         }
         s->corner_wedge[c] = s->n_wedges - 1;
         const int32_t h = qc_next(c); /* the edge crossed counter-clockwise */
@@ -220,12 +215,12 @@ static bool walk_vertex(builder *b, int32_t v, qc__walk *w) {
     return true;
 }
 
-static bool record_relation(builder *b, int32_t v, const qc__walk *w) {
+static bool record_closing(builder *b, int32_t v, const qc__walk *w) {
     qc__seams *s = b->s;
     s->node_vertex[s->n_nodes] = v;
-    s->relation_start[s->n_nodes++] = s->n_relation_terms;
-    return append_terms(b->ctx, w, &s->relation_symbol, &s->relation_turn, &s->n_relation_terms,
-                        &s->relation_capacity);
+    s->closing_start[s->n_nodes++] = s->n_closing_terms;
+    return append_terms(b->ctx, w, &s->closing_segment, &s->closing_turn, &s->n_closing_terms,
+                        &s->closing_capacity);
 }
 
 static qc_status make_wedges(builder *b) {
@@ -242,9 +237,9 @@ static qc_status make_wedges(builder *b) {
     s->wedge_turn = QC__NEW(b->ctx, int8_t, most);
     s->wedge_start = QC__NEW(b->ctx, int64_t, most + 1);
     s->node_vertex = QC__NEW(b->ctx, int32_t, nodes);
-    s->relation_start = QC__NEW(b->ctx, int64_t, nodes + 1);
+    s->closing_start = QC__NEW(b->ctx, int64_t, nodes + 1);
     if (!s->vertex_wedge || !s->corner_wedge || !s->wedge_turn || !s->wedge_start ||
-        !s->node_vertex || !s->relation_start)
+        !s->node_vertex || !s->closing_start)
         return QC_ERR_NOMEM;
     qc__walk w = {0};
     qc_status status = QC_OK;
@@ -253,13 +248,34 @@ static qc_status make_wedges(builder *b) {
         if (!walk_vertex(b, v, &w)) status = QC_ERR_NOMEM;
         if (status != QC_OK || qc_vertex_on_boundary(mesh, v)) continue;
         if (s->vertex_cone[v] >= 0) s->cone_turn[s->vertex_cone[v]] = (int8_t)(w.turn & 3);
-        if (is_node(b, v) && !record_relation(b, v, &w)) status = QC_ERR_NOMEM;
+        if (is_node(b, v) && !record_closing(b, v, &w)) status = QC_ERR_NOMEM;
     }
     s->vertex_wedge[mesh->n_vertices] = s->n_wedges;
     s->wedge_start[s->n_wedges] = s->n_terms;
-    s->relation_start[s->n_nodes] = s->n_relation_terms;
+    s->closing_start[s->n_nodes] = s->n_closing_terms;
     qc__walk_free(&w);
     return status;
+}
+
+/* Cones are given by their positions. */
+static qc_status give_positions(builder *b) {
+    const qc_mesh *mesh = b->cover->mesh;
+    qc__seams *s = b->s;
+    s->n_given = s->n_cones;
+    s->vertex_given = QC__NEW(b->ctx, int32_t, mesh->n_vertices);
+    s->given_start = QC__NEW(b->ctx, int64_t, 2 * (int64_t)s->n_given + 1);
+    s->given_symbol = QC__NEW(b->ctx, int32_t, 2 * (int64_t)s->n_given);
+    s->given_value = QC__NEW(b->ctx, int8_t, 2 * (int64_t)s->n_given);
+    if (!s->vertex_given || !s->given_start || !s->given_symbol || !s->given_value)
+        return QC_ERR_NOMEM;
+    memcpy(s->vertex_given, s->vertex_cone, sizeof(int32_t) * (size_t)mesh->n_vertices);
+    for (int32_t i = 0; i < 2 * s->n_given; i++) {
+        s->given_start[i] = i;
+        s->given_symbol[i] = qc__position_symbol(s, i / 2, i % 2);
+        s->given_value[i] = 1;
+    }
+    s->given_start[2 * s->n_given] = 2 * (int64_t)s->n_given;
+    return QC_OK;
 }
 
 qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cut,
@@ -272,6 +288,7 @@ qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cu
     if (status == QC_OK) status = count_degrees(&b);
     if (status == QC_OK) status = trace_segments(&b);
     if (status == QC_OK) status = make_wedges(&b);
+    if (status == QC_OK) status = give_positions(&b);
     qc__free(b.degree);
     if (status != QC_OK) {
         qc__seams_free(s);

@@ -6,16 +6,19 @@
  * segment k from its left to its right side, f'_right = i^{rho_k} f'_left + tau_k with one
  * translation tau_k for the whole segment (2.5 of the 2007 paper). The corners about a vertex
  * between two cut edges form a wedge; all have one value. With F_v the value in the first wedge of
- * v, f'_w = i^{a_w} F_v + sum over symbols of i^{b} symbol, symbols being the tau_k and the
- * positions p_v of the cones. The symbols satisfy one linear relation over the Gaussian integers
- * per interior node; eliminating them leaves the free variables x, which are the periods to be
- * rounded: (4.1) counts them. */
+ * v, f'_w = i^{a_w} F_v + sum of i^{b} tau_k.
+ *
+ * Some coordinates of some F_v are no unknowns: those of cones are integers. The translations and
+ * these positions, real and imaginary parts apart, are the symbols. They satisfy integer relations;
+ * solving them (relations.h) leaves the free variables y, which are the periods to be rounded:
+ * (4.1) counts them. */
 #ifndef QC_MAP_SEAMS_H
 #define QC_MAP_SEAMS_H
 
 #include "sdk/base/internal.h"
 #include <complex.h>
 #include <qc/map.h>
+#include "sdk/map/periods/relations.h"
 
 typedef struct qc__seams {
     const qc_mesh *mesh;
@@ -36,28 +39,39 @@ typedef struct qc__seams {
     int32_t *corner_wedge; /* 3 n_faces */
     int8_t *wedge_turn;    /* a_w */
     int64_t *wedge_start;  /* n_wedges + 1: terms of a wedge ...  */
-    int32_t *term_symbol;  /* ... symbol number: segment k, or n_segments + cone  */
+    int32_t *term_segment; /* ... segment k */
     int8_t *term_turn; /* ... b                                                                  */
     int64_t n_terms, term_capacity;
-    /* relations: a closing walk about each interior node, terms as above plus the cone */
+    /* a closing walk about each interior node, terms as above: sum = (1 - i^R) p */
     int32_t n_nodes;
-    int32_t *node_vertex;    /* n_nodes */
-    int64_t *relation_start; /* n_nodes + 1, into relation_symbol/turn */
-    int32_t *relation_symbol;
-    int8_t *relation_turn;
-    int64_t n_relation_terms, relation_capacity;
-    /* symbols in terms of the free variables, made by qc__seams_solve */
-    int32_t n_free;
-    int32_t *free_symbol;   /* n_free */
-    double _Complex *scale; /* n_symbols: free x = scale * Gaussian integer */
-    int32_t *fixed_symbol;  /* n_components: symbol set to zero by a global shift, -1 = none  */
-    int64_t *row_start;     /* n_symbols + 1 */
-    int32_t *row_free;
-    double _Complex *row_value; /* coefficient of the Gaussian integer */
+    int32_t *node_vertex;   /* n_nodes */
+    int64_t *closing_start; /* n_nodes + 1, into closing_segment/turn */
+    int32_t *closing_segment;
+    int8_t *closing_turn;
+    int64_t n_closing_terms, closing_capacity;
+    /* coordinates which are given by symbols: row 2 i + c of coordinate c (0 re, 1 im) of F_v, i =
+     * vertex_given[v]; an empty row is an unknown coordinate */
+    int32_t n_given;
+    int32_t *vertex_given; /* n_vertices, -1 */
+    int64_t *given_start;  /* 2 n_given + 1 */
+    int32_t *given_symbol;
+    int8_t *given_value;
+    /* symbols by free variables, and back; made by qc__seams_solve */
+    int32_t n_free, n_fixed;  /* the n_fixed ones after the free ones are set to zero by a shift */
+    int32_t *fixed_component; /* n_fixed */
+    qc__rows symbol_row;      /* n_symbols: symbol = sum of value * y_column, units included */
+    qc__rows free_row;        /* n_free + n_fixed: y = sum of value * symbol */
 } qc__seams;
 
+/* Real symbols: parts re, im of the translations, then of the positions of the cones. */
 static inline int32_t qc__seams_symbols(const qc__seams *s) {
-    return s->n_segments + s->n_cones;
+    return 2 * (s->n_segments + s->n_cones);
+}
+static inline int32_t qc__translation_symbol(int32_t segment, int32_t part) {
+    return 2 * segment + part;
+}
+static inline int32_t qc__position_symbol(const qc__seams *s, int32_t cone, int32_t part) {
+    return 2 * (s->n_segments + cone) + part;
 }
 
 static inline double _Complex qc__complex(qc_complex z) {
@@ -71,11 +85,6 @@ static inline double _Complex qc__turn(double _Complex z, int32_t k) {
     return qc__complex(qc_quarter_turn(qc__pair(z), k));
 }
 
-/* Change of a symbol when the whole combed component is shifted by 1: 1 for a cone, 1 - i^rho for a
- * translation. */
-static inline double _Complex qc__seams_shift(const qc__seams *s, int32_t symbol) {
-    return symbol >= s->n_segments ? 1.0 : 1.0 - qc__turn(1.0, s->segment_turn[symbol]);
-}
 /* Rotation of the combed map when halfedge h is crossed: f'_t = i^{c_t - m - c_s} f'_s + tau. */
 static inline int32_t qc__combed_rotation(const qc_cover *cover, const int8_t *face_turn,
                                           int32_t h) {
@@ -83,6 +92,27 @@ static inline int32_t qc__combed_rotation(const qc_cover *cover, const int8_t *f
     return (face_turn[g / 3] - qc_cover_turn(cover, h) - face_turn[h / 3]) & 3;
 }
 int32_t qc__seams_component(const qc__seams *s, int32_t symbol);
+/* Change of a symbol when its whole combed component is shifted by w. */
+double qc__seams_shift(const qc__seams *s, int32_t symbol, double _Complex w);
+/* Change of free variable y (fixed ones too) when its component is shifted by 1, real part, and by
+ * i, imaginary part. */
+double _Complex qc__seams_response(const qc__seams *s, int32_t y);
+static inline bool qc__seams_is_given(const qc__seams *s, int32_t v, int32_t coordinate) {
+    const int32_t row = 2 * s->vertex_given[v] + coordinate;
+    return row >= 0 && s->given_start[row] < s->given_start[row + 1];
+}
+/* Values of all symbols (n_symbols) for free variables y (n_free), and what a map has in every
+ * wedge besides i^{a_w} times the unknown coordinates of F_v: i^{a_w} times the given ones and the
+ * translations. wedge: n_wedges. */
+void qc__seams_symbol_values(const qc__seams *s, const double *y, double *symbol);
+void qc__seams_wedge_values(const qc__seams *s, const double *symbol, double _Complex *wedge);
+/* The transpose of the latter. */
+void qc__seams_wedge_duals(const qc__seams *s, const double _Complex *wedge, double *symbol);
+/* F_v of a map with corner values f. */
+double _Complex qc__seams_value_at(const qc__seams *s, const qc_complex *f, int32_t v);
+/* Shifts each component of a map so that its fixed variables are zero, then reads the free ones: y
+ * (n_free). Errors: NOMEM. */
+qc_status qc__seams_read(qc_ctx *ctx, const qc__seams *s, qc_complex *f, double *y);
 
 /* Segments, cones and wedges of a cut, combed cover. index4: n_vertices. */
 qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cut,
@@ -91,12 +121,12 @@ qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cu
 qc_status qc__seams_solve(qc_ctx *ctx, qc__seams *seams, int32_t lattice);
 void qc__seams_free(qc__seams *seams);
 
-/* A chart carried along a path of faces: f_here = i^turn f_start + sum of i^{symbol_turn} symbol.
+/* A chart carried along a path of faces: f_here = i^turn f_start + sum of i^{term_turn} tau.
  */
 typedef struct qc__walk {
     int32_t turn, n, capacity;
-    int32_t *symbol;
-    int8_t *symbol_turn;
+    int32_t *segment;
+    int8_t *term_turn;
 } qc__walk;
 /* Crosses halfedge h from its own face to the other; false when memory runs out. */
 bool qc__walk_cross(qc_ctx *ctx, const qc__seams *seams, qc__walk *walk, int32_t h);

@@ -4,15 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-typedef struct step { /* z_variable += i^unit */
-    int32_t variable, unit;
+typedef struct step { /* z_variable += sign */
+    int32_t variable, sign;
 } step;
 
 typedef struct search {
     const qc__separation *s;
-    int32_t n; /* complex variables */
+    int32_t n; /* variables */
     const double *P;
-    double *z, *slope;             /* slope = P (z - t), 2 n */
+    double *z, *slope;             /* slope = P (z - t) */
     double _Complex *now, *wanted; /* forms of the pairs for z and for t */
     int64_t *pair_start;           /* pairs and coefficients by variable */
     int32_t *pair;
@@ -20,10 +20,6 @@ typedef struct search {
     double energy;
     int32_t coincidence; /* weight of two cones on one lattice point: 1, then 2 */
 } search;
-
-static double _Complex unit_of(int32_t k) {
-    return qc__turn(1.0, k);
-}
 
 /* Positive: on one lattice point (1, or 2 when that counts more), or past each other (1); 0: apart.
  */
@@ -33,48 +29,40 @@ static int32_t collides(const search *q, int32_t pair, double _Complex now) {
     return creal(now) * creal(w) + cimag(now) * cimag(w) < 0;
 }
 
-static int32_t index_of(step a) {
-    return 2 * a.variable + (a.unit & 1);
-}
-static double sign_of(step a) {
-    return a.unit & 2 ? -1.0 : 1.0;
-}
-
 static double energy_change(const search *q, step a) {
-    const int64_t i = index_of(a);
-    return 0.5 * q->P[i + i * 2 * q->n] + sign_of(a) * q->slope[i];
+    const int64_t i = a.variable;
+    return 0.5 * q->P[i + i * q->n] + a.sign * q->slope[i];
 }
 
 static int32_t collision_change(const search *q, step a) {
     int32_t change = 0;
     for (int64_t i = q->pair_start[a.variable]; i < q->pair_start[a.variable + 1]; i++) {
         const int32_t p = q->pair[i];
-        change += collides(q, p, q->now[p] + q->coefficient[i] * unit_of(a.unit)) -
-                  collides(q, p, q->now[p]);
+        change +=
+            collides(q, p, q->now[p] + a.sign * q->coefficient[i]) - collides(q, p, q->now[p]);
     }
     return change;
 }
 
 static void apply(search *q, step a) {
-    const int64_t i = index_of(a), size = 2 * (int64_t)q->n;
-    const double sign = sign_of(a);
+    const int64_t i = a.variable, n = q->n;
     q->energy += energy_change(q, a);
-    q->z[i] += sign;
-    for (int64_t k = 0; k < size; k++) q->slope[k] += sign * q->P[k + i * size];
+    q->z[i] += a.sign;
+    for (int64_t k = 0; k < n; k++) q->slope[k] += a.sign * q->P[k + i * n];
     for (int64_t k = q->pair_start[a.variable]; k < q->pair_start[a.variable + 1]; k++)
-        q->now[q->pair[k]] += q->coefficient[k] * unit_of(a.unit);
+        q->now[q->pair[k]] += a.sign * q->coefficient[k];
 }
 
 static step opposite(step a) {
-    return (step){a.variable, (a.unit + 2) & 3};
+    return (step){a.variable, -a.sign};
 }
 
 /* Cheapest single step on a variable of the pair which lowers the number of collisions. */
 static bool best_step(const search *q, int32_t pair, step *best) {
     double least = INFINITY;
     for (int64_t i = q->s->start[pair]; i < q->s->start[pair + 1]; i++)
-        for (int32_t unit = 0; unit < 4; unit++) {
-            const step a = {q->s->variable[i], unit};
+        for (int32_t sign = -1; sign <= 1; sign += 2) {
+            const step a = {q->s->variable[i], sign};
             const double change = energy_change(q, a);
             if (change < least && collision_change(q, a) < 0) {
                 least = change;
@@ -89,8 +77,8 @@ static bool best_step(const search *q, int32_t pair, step *best) {
 static bool best_two_steps(search *q, int32_t pair, step *first, step *second) {
     double least = INFINITY;
     for (int64_t i = q->s->start[pair]; i < q->s->start[pair + 1]; i++)
-        for (int32_t unit = 0; unit < 4; unit++) {
-            const step a = {q->s->variable[i], unit};
+        for (int32_t sign = -1; sign <= 1; sign += 2) {
+            const step a = {q->s->variable[i], sign};
             const double change = energy_change(q, a);
             const int32_t collisions = collision_change(q, a);
             if (change > least) continue;
@@ -145,8 +133,8 @@ static qc_status descend(qc_ctx *ctx, search *q) {
         changed = false;
         if (!qc__progress(ctx, 0.5)) return QC_ERR_CANCELLED;
         for (int32_t j = 0; j < q->n; j++)
-            for (int32_t unit = 0; unit < 4; unit++) {
-                const step a = {j, unit};
+            for (int32_t sign = -1; sign <= 1; sign += 2) {
+                const step a = {j, sign};
                 if (energy_change(q, a) >= -enough || collision_change(q, a) > 0) continue;
                 apply(q, a);
                 changed = true;
@@ -157,8 +145,8 @@ static qc_status descend(qc_ctx *ctx, search *q) {
 
 static qc_status prepare(qc_ctx *ctx, search *q, const double *t) {
     const qc__separation *s = q->s;
-    const int64_t size = 2 * (int64_t)q->n, terms = s->start[s->n];
-    q->slope = QC__ZERO(ctx, double, size);
+    const int64_t n = q->n, terms = s->start[s->n];
+    q->slope = QC__ZERO(ctx, double, n);
     q->now = QC__ZERO(ctx, double _Complex, s->n);
     q->wanted = QC__ZERO(ctx, double _Complex, s->n);
     q->pair_start = QC__ZERO(ctx, int64_t, q->n + 2);
@@ -166,13 +154,13 @@ static qc_status prepare(qc_ctx *ctx, search *q, const double *t) {
     q->coefficient = QC__NEW(ctx, double _Complex, terms);
     if (!q->slope || !q->now || !q->wanted || !q->pair_start || !q->pair || !q->coefficient)
         return QC_ERR_NOMEM;
-    for (int64_t j = 0; j < size; j++)
-        for (int64_t i = 0; i < size; i++) q->slope[i] += q->P[i + j * size] * (q->z[j] - t[j]);
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++) q->slope[i] += q->P[i + j * n] * (q->z[j] - t[j]);
     for (int32_t p = 0; p < s->n; p++)
         for (int64_t i = s->start[p]; i < s->start[p + 1]; i++) {
             const int64_t j = s->variable[i];
-            q->now[p] += s->value[i] * (q->z[2 * j] + q->z[2 * j + 1] * I);
-            q->wanted[p] += s->value[i] * (t[2 * j] + t[2 * j + 1] * I);
+            q->now[p] += s->value[i] * q->z[j];
+            q->wanted[p] += s->value[i] * t[j];
         }
     for (int64_t i = 0; i < terms; i++) q->pair_start[s->variable[i] + 2]++;
     for (int32_t j = 0; j < q->n; j++) q->pair_start[j + 2] += q->pair_start[j + 1];

@@ -108,16 +108,26 @@ static qc_status find_bridges(finder *f, double reach) {
 /* --- forms ------------------------------------------------------------------------------------ */
 
 static void add_symbol(finder *f, int32_t symbol, double _Complex factor) {
-    const qc__seams *s = f->seams;
-    for (int64_t i = s->row_start[symbol]; i < s->row_start[symbol + 1]; i++)
-        f->sum[s->row_free[i]] += factor * s->row_value[i];
+    const qc__rows *rows = &f->seams->symbol_row;
+    for (int64_t i = rows->start[symbol]; i < rows->start[symbol + 1]; i++)
+        f->sum[rows->column[i]] += factor * rows->value[i];
 }
 
+static void add_translation(finder *f, int32_t segment, double _Complex factor) {
+    add_symbol(f, qc__translation_symbol(segment, 0), factor);
+    add_symbol(f, qc__translation_symbol(segment, 1), factor * I);
+}
+
+/* The value at corner c of a vertex with both coordinates given. */
 static void add_corner(finder *f, int32_t c, int32_t turn, double _Complex sign) {
     const qc__seams *s = f->seams;
-    const int32_t w = s->corner_wedge[c];
+    const int32_t w = s->corner_wedge[c], row = 2 * s->vertex_given[s->mesh->face_vertex[c]];
+    for (int32_t k = 0; k < 2; k++)
+        for (int64_t i = s->given_start[row + k]; i < s->given_start[row + k + 1]; i++)
+            add_symbol(f, s->given_symbol[i],
+                       s->given_value[i] * qc__turn(k ? sign * I : sign, turn + s->wedge_turn[w]));
     for (int64_t i = s->wedge_start[w]; i < s->wedge_start[w + 1]; i++)
-        add_symbol(f, s->term_symbol[i], qc__turn(sign, turn + s->term_turn[i]));
+        add_translation(f, s->term_segment[i], qc__turn(sign, turn + s->term_turn[i]));
 }
 
 /* Turns corner c about its vertex, into the face where the edge `to` leaves or enters it, carrying
@@ -183,7 +193,7 @@ static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t 
     }
     add_corner(f, c, -walk->turn, 1.0);
     for (int32_t i = 0; i < walk->n; i++)
-        add_symbol(f, walk->symbol[i], -qc__turn(1.0, walk->symbol_turn[i] - walk->turn));
+        add_translation(f, walk->segment[i], -qc__turn(1.0, walk->term_turn[i] - walk->turn));
     return QC_OK;
 }
 

@@ -12,7 +12,7 @@
 typedef struct qc__separation {
     int32_t n;      /* pairs */
     int32_t *cone;  /* 2 n */
-    int64_t *start; /* n + 1: the form by free variables, acting on Gaussian integers */
+    int64_t *start; /* n + 1: the form by free variables */
     int32_t *variable;
     double _Complex *value;
 } qc__separation;
@@ -23,8 +23,8 @@ qc_status qc__separation_create(qc_ctx *ctx, const qc__seams *seams, double reac
                                 qc__separation **out);
 void qc__separation_free(qc__separation *separation);
 
-/* Moves integers z (2 n_free) with small energy 1/2 (z - t)^T P (z - t) until no pair collides.
- * *energy is updated; *left = pairs which still collide. P: (2 n)^2. */
+/* Moves integers z (n_free) with small energy 1/2 (z - t)^T P (z - t) until no pair collides.
+ * *energy is updated; *left = pairs which still collide. P: n_free^2. */
 qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_free,
                        const double *P, const double *t, double *z, double *energy, int32_t *left);
 

@@ -17,9 +17,8 @@ static double *period_matrix(qc_ctx *ctx, const qc_seamless_map *map, int32_t *n
     bench_check(ctx,
                 qc__seams_create(ctx, &cover, map->cut, map->face_turn, matching->index4, &seams));
     bench_check(ctx, qc__seams_solve(ctx, seams, QC_LATTICE_QUADS));
-    bench_check(ctx,
-                qc__periods_create(ctx, &cover, seams, cotangent, map->face_turn, NULL, &periods));
-    *n = 2 * seams->n_free;
+    bench_check(ctx, qc__periods_create(ctx, seams, cotangent, NULL, &periods));
+    *n = seams->n_free;
     double *P = NEW(double, (int64_t)*n **n);
     bench_check(ctx, qc__period_matrix(ctx, periods, P));
     qc__periods_free(periods);

@@ -23,8 +23,7 @@ static void for_all(check *body) {
             setting *s = setting_create(ctx, &CASES[i], 300);
             qc__seams *seams = setting_seams(s, lattice);
             qc__periods *periods = NULL;
-            must(ctx, qc__periods_create(ctx, &s->cover, seams, s->stiffness, s->map->face_turn,
-                                         NULL, &periods));
+            must(ctx, qc__periods_create(ctx, seams, s->stiffness, NULL, &periods));
             if (seams->n_free > 0) body(s, seams, periods);
             qc__periods_free(periods);
             qc__seams_free(seams);
@@ -34,24 +33,23 @@ static void for_all(check *body) {
 }
 
 static double *matrix_of(const setting *s, const qc__periods *periods) {
-    const int64_t n = 2 * (int64_t)periods->n_columns;
+    const int64_t n = periods->n_columns;
     double *P = ARRAY(double, n *n);
     must(s->ctx, qc__period_matrix(s->ctx, periods, P));
     return P;
 }
 
-static complex_t *random_periods(int32_t n, uint64_t *state) {
-    complex_t *d = ARRAY(complex_t, n);
-    for (int32_t j = 0; j < n; j++) d[j] = uniform(state) + uniform(state) * I;
+static double *random_periods(int32_t n, uint64_t *state) {
+    double *d = ARRAY(double, n);
+    for (int32_t j = 0; j < n; j++) d[j] = uniform(state);
     return d;
 }
 
-/* 1/2 d^T P d with d as pairs (re, im). */
-static double quadratic(int32_t n, const double *P, const complex_t *d) {
-    const double *x = (const double *)d;
+/* 1/2 d^T P d. */
+static double quadratic(int64_t n, const double *P, const double *d) {
     double sum = 0;
-    for (int64_t j = 0; j < 2 * n; j++)
-        for (int64_t i = 0; i < 2 * n; i++) sum += 0.5 * x[i] * P[i + j * 2 * n] * x[j];
+    for (int64_t j = 0; j < n; j++)
+        for (int64_t i = 0; i < n; i++) sum += 0.5 * d[i] * P[i + j * n] * d[j];
     return sum;
 }
 
@@ -76,7 +74,7 @@ static double smallest_pivot(int32_t n, double *A) {
 
 static void it_is_symmetric_positive_definite(const setting *s, const qc__seams *seams,
                                               const qc__periods *periods) {
-    const int32_t n = 2 * seams->n_free;
+    const int32_t n = seams->n_free;
     double *P = matrix_of(s, periods);
     for (int32_t j = 0; j < n; j++)
         for (int32_t i = 0; i < j; i++) assert_true(P[i + (int64_t)j * n] == P[j + (int64_t)i * n]);
@@ -113,12 +111,12 @@ static void maps_have_their_periods_and_energy(const setting *s, const qc__seams
     uint64_t state = 3;
     double *P = matrix_of(s, periods);
     for (int round = 0; round < 3; round++) {
-        complex_t *d = random_periods(seams->n_free, &state);
+        double *d = random_periods(seams->n_free, &state);
         complex_t *symbol = symbol_values(seams, d);
-        qc_complex *f = ARRAY(qc_complex, 3 * (int64_t)s->mesh->n_faces);
-        must(s->ctx, qc__periods_add_map(s->ctx, periods, d, f));
+        qc_complex *f = harmonic_map(s->ctx, periods, d);
         double size = 1, flux = 0;
-        for (int32_t j = 0; j < qc__seams_symbols(seams); j++) size = fmax(size, cabs(symbol[j]));
+        for (int32_t j = 0; j < seams->n_segments + seams->n_cones; j++)
+            size = fmax(size, cabs(symbol[j]));
         assert_true(seam_deviation(s, seams, symbol, f) <= 1e-11 * size);
         const double energy = energy_of(s, s->stiffness, f, NULL),
                      wanted = quadratic(seams->n_free, P, d);
@@ -152,9 +150,11 @@ static void periods_of_the_hodge_step_are_stationary(const setting *s, const qc_
     const double curl = energy_of(s, s->stiffness, s->map->f, z);
     if (s->map->weight) stiffened++;
     for (int round = 0; round < 3; round++) {
-        complex_t *d = random_periods(seams->n_free, &state);
-        memcpy(f, s->map->f, sizeof *f * (size_t)n_corners);
-        must(s->ctx, qc__periods_add_map(s->ctx, periods, d, f));
+        double *d = random_periods(seams->n_free, &state);
+        qc_complex *h = harmonic_map(s->ctx, periods, d);
+        for (int64_t c = 0; c < n_corners; c++)
+            f[c] = qc__pair(qc__complex(s->map->f[c]) + qc__complex(h[c]));
+        free(h);
         const double together = energy_of(s, s->stiffness, f, z),
                      apart = quadratic(seams->n_free, P, d);
         assert_true(fabs(together - curl - apart) <= 1e-10 * (field + apart));
@@ -180,16 +180,15 @@ static void test_threads(void **state) {
         setting *s = setting_create(ctx, &CASES[1], 300);
         qc__seams *seams = setting_seams(s, QC_LATTICE_QUADS);
         qc__periods *periods = NULL;
-        must(ctx, qc__periods_create(ctx, &s->cover, seams, s->stiffness, s->map->face_turn, NULL,
-                                     &periods));
-        n = 2 * seams->n_free;
+        must(ctx, qc__periods_create(ctx, seams, s->stiffness, NULL, &periods));
+        n = seams->n_free;
         P[threads - 1] = matrix_of(s, periods);
         qc__periods_free(periods);
         qc__seams_free(seams);
         setting_free(s);
         qc_ctx_free(ctx);
     }
-    assert_true(n > 2 * 16); /* more than one block */
+    assert_true(n > 32); /* more than one block */
     for (int i = 1; i < 3; i++)
         assert_memory_equal(P[0], P[i], sizeof(double) * (size_t)n * (size_t)n);
     for (int i = 0; i < 3; i++) free(P[i]);

@@ -34,9 +34,8 @@ static inline double uniform(uint64_t *state) { /* [-1, 1) */
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) / 4503599627370496.0 - 1;
 }
-static inline complex_t random_integer(uint64_t *state, double size) {
-    const double re = rint(size * uniform(state)), im = rint(size * uniform(state));
-    return re + im * I;
+static inline double random_integer(uint64_t *state, double size) {
+    return rint(size * uniform(state));
 }
 
 static inline qc_ctx *context(uint32_t threads) {
@@ -171,13 +170,59 @@ static inline qc__seams *setting_seams(const setting *s, int32_t lattice) {
     return seams;
 }
 
-/* Values of all symbols for the free variables x. */
-static inline complex_t *symbol_values(const qc__seams *s, const complex_t *x) {
-    complex_t *value = ARRAY(complex_t, qc__seams_symbols(s));
-    for (int32_t j = 0; j < qc__seams_symbols(s); j++)
-        for (int64_t i = s->row_start[j]; i < s->row_start[j + 1]; i++)
-            value[j] += s->row_value[i] * x[s->row_free[i]];
-    return value;
+/* Values of all symbols for the free variables y, as complex numbers: translations, then positions
+ * of cones. */
+static inline complex_t *symbol_values(const qc__seams *s, const double *y) {
+    double *value = ARRAY(double, qc__seams_symbols(s) + 1);
+    complex_t *symbol = ARRAY(complex_t, s->n_segments + s->n_cones);
+    qc__seams_symbol_values(s, y, value);
+    for (int32_t j = 0; j < s->n_segments + s->n_cones; j++)
+        symbol[j] = value[2 * j] + value[2 * j + 1] * I;
+    free(value);
+    return symbol;
+}
+/* The translations and positions of a seamless map. */
+static inline complex_t *measured_symbols(const qc__seams *q, const qc_complex *f) {
+    const qc_mesh *mesh = q->mesh;
+    complex_t *symbol = ARRAY(complex_t, q->n_segments + q->n_cones);
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        const int32_t k = q->edge_segment[e], left = q->edge_left[e];
+        if (k >= 0)
+            symbol[k] = qc__complex(f[qc_prev(mesh->twin[left])]) -
+                        qc__turn(qc__complex(f[qc_next(left)]), q->segment_turn[k]);
+    }
+    for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
+        const int32_t v = mesh->face_vertex[c], cone = q->vertex_cone[v];
+        if (cone >= 0 && q->corner_wedge[c] == q->vertex_wedge[v])
+            symbol[q->n_segments + cone] = qc__complex(f[c]);
+    }
+    return symbol;
+}
+/* Free and fixed variables of symbols. */
+static inline double *free_values(const qc__seams *s, const complex_t *symbol) {
+    const qc__rows *rows = &s->free_row;
+    double *y = ARRAY(double, s->n_free + s->n_fixed);
+    for (int32_t j = 0; j < s->n_free + s->n_fixed; j++)
+        for (int64_t i = rows->start[j]; i < rows->start[j + 1]; i++) {
+            const complex_t z = symbol[rows->column[i] / 2];
+            y[j] += rows->value[i] * (rows->column[i] % 2 ? cimag(z) : creal(z));
+        }
+    return y;
+}
+/* The map of least energy with free variables y. */
+static inline qc_complex *harmonic_map(qc_ctx *ctx, const qc__periods *p, const double *y) {
+    const qc__seams *s = p->seams;
+    double *symbol = ARRAY(double, qc__seams_symbols(s));
+    complex_t *wedge = ARRAY(complex_t, s->n_wedges), *F = ARRAY(complex_t, s->mesh->n_vertices);
+    qc_complex *f = ARRAY(qc_complex, 3 * (int64_t)s->mesh->n_faces);
+    qc__seams_symbol_values(s, y, symbol);
+    qc__seams_wedge_values(s, symbol, wedge);
+    must(ctx, qc__periods_extend(ctx, p, wedge, F));
+    qc__periods_corners(s, wedge, F, f);
+    free(symbol);
+    free(wedge);
+    free(F);
+    return f;
 }
 
 /* Turns of the combed map across interior edge e from its left to its right face, from the matching

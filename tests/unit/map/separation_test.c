@@ -15,39 +15,9 @@ typedef struct problem {
     qc__seams *seams;
     qc__periods *periods;
     qc__separation *separation;
-    double reach, *P, *t; /* t: periods of the seamless map, pairs */
+    double reach, *P, *t; /* t: periods of the seamless map */
     int32_t n;
 } problem;
-
-/* The seamless map shifted so that the fixed symbol is 0, and its free variables. */
-static void read_periods(problem *p, qc_complex *f) {
-    const qc__seams *q = p->seams;
-    const qc_mesh *mesh = p->s->mesh;
-    complex_t *symbol = ARRAY(complex_t, qc__seams_symbols(q));
-    for (int pass = 0; pass < 2; pass++) {
-        for (int32_t e = 0; e < mesh->n_edges; e++) {
-            const int32_t k = q->edge_segment[e], left = q->edge_left[e];
-            if (k >= 0)
-                symbol[k] = qc__complex(f[qc_prev(mesh->twin[left])]) -
-                            qc__turn(qc__complex(f[qc_next(left)]), q->segment_turn[k]);
-        }
-        for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
-            const int32_t v = mesh->face_vertex[c], cone = q->vertex_cone[v];
-            if (cone >= 0 && q->corner_wedge[c] == q->vertex_wedge[v])
-                symbol[q->n_segments + cone] = qc__complex(f[c]);
-        }
-        const int32_t fixed = q->fixed_symbol[0];
-        if (pass == 1 || fixed < 0) break;
-        const complex_t w = -symbol[fixed] / qc__seams_shift(q, fixed);
-        for (int32_t c = 0; c < 3 * mesh->n_faces; c++) f[c] = qc__pair(qc__complex(f[c]) + w);
-    }
-    for (int32_t j = 0; j < q->n_free; j++) {
-        const complex_t x = symbol[q->free_symbol[j]] / q->scale[q->free_symbol[j]];
-        p->t[2 * j] = creal(x);
-        p->t[2 * j + 1] = cimag(x);
-    }
-    free(symbol);
-}
 
 static problem *problem_create(qc_ctx *ctx, const surface_case *c, double quads, qc_complex **map) {
     problem *p = ARRAY(problem, 1);
@@ -55,15 +25,14 @@ static problem *problem_create(qc_ctx *ctx, const surface_case *c, double quads,
     p->seams = setting_seams(p->s, QC_LATTICE_QUADS);
     p->n = p->seams->n_free;
     p->reach = 3 * p->s->sizing->edge_length;
-    must(ctx, qc__periods_create(ctx, &p->s->cover, p->seams, p->s->stiffness, p->s->map->face_turn,
-                                 NULL, &p->periods));
+    must(ctx, qc__periods_create(ctx, p->seams, p->s->stiffness, NULL, &p->periods));
     must(ctx, qc__separation_create(ctx, p->seams, p->reach, &p->separation));
-    p->P = ARRAY(double, 4 * (int64_t)p->n * p->n);
-    p->t = ARRAY(double, 2 * (int64_t)p->n);
+    p->P = ARRAY(double, (int64_t)p->n * p->n);
+    p->t = ARRAY(double, p->n);
     must(ctx, qc__period_matrix(ctx, p->periods, p->P));
     qc_complex *f = ARRAY(qc_complex, 3 * (int64_t)p->s->mesh->n_faces);
     memcpy(f, p->s->map->f, sizeof *f * 3 * (size_t)p->s->mesh->n_faces);
-    read_periods(p, f);
+    must(ctx, qc__seams_read(ctx, p->seams, f, p->t));
     if (map)
         *map = f;
     else
@@ -83,8 +52,7 @@ static void problem_free(problem *p) {
 static complex_t form_of(const qc__separation *s, int32_t pair, const double *z) {
     complex_t value = 0;
     for (int64_t i = s->start[pair]; i < s->start[pair + 1]; i++) {
-        const int32_t j = s->variable[i];
-        value += s->value[i] * (z[2 * j] + z[2 * j + 1] * I);
+        value += s->value[i] * z[s->variable[i]];
     }
     return value;
 }
@@ -237,9 +205,9 @@ static void neighbours_are_found(void **state) {
 
 static double energy_at(const problem *p, const double *t, const double *z) {
     double sum = 0;
-    for (int64_t j = 0; j < 2 * p->n; j++)
-        for (int64_t i = 0; i < 2 * p->n; i++)
-            sum += 0.5 * (z[i] - t[i]) * p->P[i + j * 2 * p->n] * (z[j] - t[j]);
+    for (int64_t j = 0; j < p->n; j++)
+        for (int64_t i = 0; i < p->n; i++)
+            sum += 0.5 * (z[i] - t[i]) * p->P[i + j * p->n] * (z[j] - t[j]);
     return sum;
 }
 
@@ -260,7 +228,7 @@ static void separated_cones_do_not_collide(void **state) {
     for (int i = 0; i < N_CASES; i++)
         for (int round = 0; round < 4; round++) {
             problem *p = problem_create(ctx, &CASES[i], round % 2 ? 100 : 800, NULL);
-            const int64_t size = 2 * (int64_t)p->n;
+            const int64_t size = p->n;
             double *t = ARRAY(double, size), *z = ARRAY(double, size), *z0 = ARRAY(double, size);
             for (int64_t j = 0; j < size; j++) {
                 t[j] = p->t[j] + (round > 1 ? 3 * uniform(&random) : 0);
