@@ -61,6 +61,7 @@ static void append(qc_polygon_mesh *out, const qc_polygon_mesh *p, const int32_t
     if (p->face_line) copy_ints(out->face_line + face, p->face_line, p->n_faces, 0);
     if (p->face_group) copy_ints(out->face_group + face, p->face_group, p->n_faces, 0);
     if (out->source_face) copy_source(out, p, map, vertex);
+    for (int32_t i = 0; out->source_edge && i < p->n_lines; i++) out->source_edge[line + i] = -1;
 }
 
 qc_status qc_polygon_mesh_merge(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *const *parts,

@@ -13,6 +13,7 @@ static void polygon_mesh_destroy(qc_object *object) {
     qc__free(p->face_group);
     qc__free(p->source_face);
     qc__free(p->source_barycentric);
+    qc__free(p->source_edge);
     qc__free(p);
 }
 
@@ -31,6 +32,7 @@ static bool allocate(qc_ctx *ctx, qc_polygon_mesh *p, uint32_t flags) {
     if (flags & QC_POLYGON_SOURCE) {
         ok = ok && (p->source_face = QC__ZERO(ctx, int32_t, vertices));
         ok = ok && (p->source_barycentric = QC__ZERO(ctx, double, 3 * vertices));
+        if (p->n_lines > 0) ok = ok && (p->source_edge = QC__ZERO(ctx, int32_t, p->n_lines));
     }
     return ok;
 }

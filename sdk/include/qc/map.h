@@ -123,16 +123,20 @@ typedef struct qc_grid_map {
                                counter-clockwise; 0 on the boundary                              */
     int32_t n_flipped, n_degenerate; /* faces with negative / zero orientation */
     int32_t first_flipped; /* a face, -1 = none                                                */
+    const int8_t *axis;    /* optional, n_edges: features as in qc_corner_map; their level, the
+                              coordinate across i^k, is an integer, the same at both ends        */
 } qc_grid_map;
 #define QC_TYPE_GRID_MAP "qc.grid_map/1"
 /* Finds the transition of every edge, rounds one representative a vertex, writes the other corners
- * through the transitions. Errors: FAILED naming edge and amount when a seam is not integer to
- * within `tolerance` (parameter units; 0 = 0.05), or naming the vertex when transitions around it
- * are inconsistent or its fixed point is not a lattice point. */
+ * through the transitions. Features keep their isoline; where they turn, branch or end is a lattice
+ * point. A map which does not tell its features (axis NULL) gets the boundary loops which lie on
+ * isolines. Errors: FAILED naming edge and amount when a seam or the level of a feature is not
+ * integer to within `tolerance` (parameter units; 0 = 0.05), or naming the vertex when transitions
+ * around it are inconsistent or its fixed point is not a lattice point. */
 QC_API qc_status qc_grid_map_create(qc_ctx *ctx, const qc_corner_map *map, double tolerance,
                                     qc_grid_map **out);
 /* The same map in doubles (exact), keeping cross, edge_length and energies of `like` (may be NULL).
- */
+ * Its rotation and axis are those of the grid. */
 QC_API qc_status qc_grid_map_to_corner_map(qc_ctx *ctx, const qc_grid_map *grid,
                                            const qc_corner_map *like, qc_corner_map **out);
 /* Twice the signed area of face t in grid units; exact. */

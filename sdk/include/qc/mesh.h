@@ -34,15 +34,19 @@ typedef struct qc_polygon_mesh {
     int32_t *face_vertex; /* n_corners, 0-based */
     double *uv;         /* optional, 2 n_uvs                                                     */
     int32_t *corner_uv; /* optional, n_corners; -1 = none                                        */
-    int32_t *line;      /* optional, 2 n_lines: OBJ `l` segments as vertex pairs                  */
+    int32_t *line;      /* optional, 2 n_lines: OBJ `l` segments as vertex pairs; of quads made from
+                           a map: the edges which lie on its features                             */
     int32_t *face_line; /* optional, n_faces: line (text) or 1-based element in the file          */
     int32_t *face_group;  /* optional, n_faces: OBJ g/usemtl number, 0 = none        */
     int32_t *source_face; /* optional, n_vertices: face of the mesh it was made from ...       */
     double *source_barycentric; /* ... and 3 n_vertices barycentric coordinates in it */
+    int32_t *source_edge; /* optional, n_lines: edge of that mesh where line[2 i] or its other end
+                             begins; -1 = not known, as in a union                              */
 } qc_polygon_mesh;
 
-/* Allocates zeroed arrays for the given sizes (n_uvs > 0 also makes corner_uv; flags add optional
- * arrays). The caller fills them before publishing, owns *out, frees with qc_object_release. */
+/* Allocates zeroed arrays for the given sizes (n_uvs > 0 also makes corner_uv, SOURCE with
+ * n_lines > 0 source_edge; flags add optional arrays). The caller fills them before publishing,
+ * owns *out, frees with qc_object_release. */
 enum { QC_POLYGON_FACE_LINE = 1, QC_POLYGON_FACE_GROUP = 2, QC_POLYGON_SOURCE = 4 };
 QC_API qc_status qc_polygon_mesh_create(qc_ctx *ctx, int32_t n_vertices, int32_t n_faces,
                                         int32_t n_corners, int32_t n_uvs, int32_t n_lines,

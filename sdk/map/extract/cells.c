@@ -21,9 +21,17 @@ static qc_status not_closed(qc_ctx *ctx, const qc__ports *p, int32_t port) {
                     (int)p->uv[2 * (int64_t)port + 1]);
 }
 
+/* Whether the port runs along an aligned boundary with the outside on its left: the last of its
+ * fan.
+ */
+static bool faces_outside(const qc__ports *p, int32_t port) {
+    const int32_t id = p->vertex[port];
+    return qc__lattice_on_boundary(p->lattice, id) && port + 1 == p->first[id + 1];
+}
+
 /* Numbers the complete cells by left; side: their sides are counted. */
 static qc_status collect(qc_ctx *ctx, const qc__ports *p, qc__cells *cells) {
-    const bool closed = p->lattice->g->mesh->n_boundary_edges == 0;
+    const bool closed = !p->lattice->open;
     for (int32_t port = 0; port < p->n; port++) cells->left[port] = -1;
     for (int32_t port = 0; port < p->n; port++) {
         if (port % 8192 == 0 && !qc__progress(ctx, 0.75 + 0.05 * port / p->n))
@@ -32,7 +40,7 @@ static qc_status collect(qc_ctx *ctx, const qc__ports *p, qc__cells *cells) {
         int32_t side[5] = {port, -1, -1, -1, -1};
         for (int i = 0; i < 4 && side[i] >= 0; i++) side[i + 1] = qc__next_side(p, side[i]);
         if (side[4] != port) {
-            if (closed) return not_closed(ctx, p, port);
+            if (closed && !faces_outside(p, port)) return not_closed(ctx, p, port);
             continue;
         }
         const qc__visit v = {
@@ -55,7 +63,7 @@ static void join_complete(const qc__ports *p, qc__cells *cells) {
 }
 
 qc_status qc__cells_create(qc_ctx *ctx, const qc__ports *ports, qc__cells *out) {
-    const bool open = ports->lattice->g->mesh->n_boundary_edges > 0;
+    const bool open = ports->lattice->open;
     qc__cells cells = {.pieces = {.ports = ports}};
     qc_status status = open ? qc__open_pieces(ctx, ports, &cells.pieces) : QC_OK;
     const int32_t n_open = cells.pieces.n;

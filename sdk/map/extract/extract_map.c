@@ -65,8 +65,7 @@ static qc_status extract(qc_ctx *ctx, const qc_grid_map *grid, qc__lattice *latt
     if (status == QC_OK) status = qc__ports_trace(ctx, ports);
     if (status == QC_OK) status = qc__cells_create(ctx, ports, cells);
     if (status == QC_OK && !qc__progress(ctx, 0.85)) status = QC_ERR_CANCELLED;
-    if (status == QC_OK && grid->mesh->n_boundary_edges > 0)
-        status = qc__cells_keep(ctx, ports, cells);
+    if (status == QC_OK && lattice->open) status = qc__cells_keep(ctx, ports, cells);
     if (status == QC_OK && cells->n == 0)
         status =
             qc__fail(ctx, QC_ERR_FAILED, -1, "the map has no quad at all; try a finer density");

@@ -13,6 +13,7 @@
 typedef struct qc__lattice {
     const qc_grid_map *g;
     int32_t n, n_at_vertices, n_on_skeleton; /* skeleton: vertices and edges */
+    bool open;                               /* a part of the boundary does not follow isolines */
     int32_t *vertex_id;  /* n_vertices: number, -1 = no lattice point                      */
     int32_t *edge_first; /* n_edges + 1: numbers of the points inside an edge                     */
     int32_t *face_first; /* n_faces + 1                     */
@@ -55,9 +56,11 @@ static inline qc__point qc__port_point(const qc__ports *p, int32_t port) {
     return (qc__point){p->uv[2 * (int64_t)port] * unit, p->uv[2 * (int64_t)port + 1] * unit};
 }
 
-/* Fills in mate by exact tracing (trace.c). On a mesh without boundary an unmatched port is
- * FAILED. */
+/* Fills in mate by exact tracing (trace.c). Where all of the boundary follows isolines, or there is
+ * none, an unmatched port is FAILED. */
 qc_status qc__ports_trace(qc_ctx *ctx, qc__ports *ports);
+/* The feature edge which the port starts along, -1 = none (features.c). */
+int32_t qc__port_feature(const qc__ports *ports, int32_t port);
 /* The boundary halfedge at which the isoline of an unmatched port leaves the surface, -1 = none. */
 int32_t qc__port_exit(const qc__ports *ports, int32_t port);
 
@@ -176,6 +179,11 @@ qc_status qc__quad_vertices(qc_ctx *ctx, const qc__ports *ports, const qc__cells
 /* Puts the vertices outside the surface on its boundary and moves those next to it. */
 qc_status qc__place_rim(qc_ctx *ctx, const qc__cells *cells, const int32_t *vertex,
                         int32_t n_lattice, qc_polygon_mesh *q);
+/* Sides of kept cells along features and the feature edges they start on, each isoline once; NULL =
+ * count only. FAILED where a feature is no chain of sides, unless a boundary which does not follow
+ * isolines may cut it. */
+qc_status qc__feature_sides(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
+                            int32_t *side, int32_t *source, int32_t *n);
 qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
                            qc_polygon_mesh **out);
 

@@ -139,6 +139,8 @@ static qc_status fill(qc_ctx *ctx, qc__lattice *l) {
 
 qc_status qc__lattice_create(qc_ctx *ctx, const qc_grid_map *g, qc__lattice *out) {
     qc__lattice l = {.g = g};
+    for (int32_t e = 0; e < g->mesh->n_edges; e++)
+        l.open |= g->mesh->edge_halfedge[2 * (int64_t)e + 1] < 0 && (!g->axis || g->axis[e] < 0);
     l.vertex_id = QC__NEW(ctx, int32_t, g->mesh->n_vertices);
     l.edge_first = QC__NEW(ctx, int32_t, (int64_t)g->mesh->n_edges + 1);
     l.face_first = QC__NEW(ctx, int32_t, (int64_t)g->mesh->n_faces + 1);

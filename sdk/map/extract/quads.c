@@ -36,6 +36,19 @@ static qc_status fill(qc_ctx *ctx, const qc__ports *p, const qc__cells *c, const
     return c->n > c->n_complete ? qc__place_rim(ctx, c, vertex, n_lattice, q) : QC_OK;
 }
 
+static qc_status fill_lines(qc_ctx *ctx, const qc__ports *p, const qc__cells *c,
+                            const int32_t *vertex, qc_polygon_mesh *q) {
+    int32_t *side = QC__NEW(ctx, int32_t, q->n_lines), n;
+    if (!side) return QC_ERR_NOMEM;
+    const qc_status status = qc__feature_sides(ctx, p, c, side, q->source_edge, &n);
+    for (int32_t i = 0; status == QC_OK && i < n; i++) {
+        q->line[2 * (int64_t)i] = vertex[side[i]];
+        q->line[2 * (int64_t)i + 1] = vertex[(side[i] & ~3) | ((side[i] + 1) & 3)];
+    }
+    qc__free(side);
+    return status;
+}
+
 qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *p, const qc__cells *c,
                            qc_polygon_mesh **out) {
     int32_t *vertex = QC__NEW(ctx, int32_t, 4 * (int64_t)c->n);
@@ -43,10 +56,13 @@ qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *p, const qc__cells *c,
     int32_t n_lattice = 0, n_vertices = 0, n_quads = 0;
     for (int32_t cell = 0; cell < c->n; cell++) n_quads += c->keep[cell] != 0;
     qc_polygon_mesh *q = NULL;
+    int32_t n_lines = 0;
     qc_status status = qc__quad_vertices(ctx, p, c, vertex, &n_lattice, &n_vertices);
+    if (status == QC_OK) status = qc__feature_sides(ctx, p, c, NULL, NULL, &n_lines);
     if (status == QC_OK)
-        status = qc_polygon_mesh_create(ctx, n_vertices, n_quads, 4 * n_quads, 0, 0,
+        status = qc_polygon_mesh_create(ctx, n_vertices, n_quads, 4 * n_quads, 0, n_lines,
                                         QC_POLYGON_SOURCE, &q);
+    if (status == QC_OK && n_lines > 0) status = fill_lines(ctx, p, c, vertex, q);
     if (status == QC_OK) status = fill(ctx, p, c, vertex, n_lattice, q);
     if (status == QC_OK)
         *out = q;

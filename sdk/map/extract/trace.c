@@ -108,14 +108,13 @@ static qc_status unmatched(qc_ctx *ctx, const qc__ports *p, int32_t port) {
 }
 
 qc_status qc__ports_trace(qc_ctx *ctx, qc__ports *p) {
-    const qc_mesh *m = p->lattice->g->mesh;
     for (int32_t port = 0; port < p->n; port++) {
         if (port % 4096 == 0 && !qc__progress(ctx, 0.3 + 0.4 * port / p->n))
             return QC_ERR_CANCELLED;
         if (p->mate[port] >= 0) continue;
         step s;
         const int32_t mate = walk(p, port, &s) ? arrive(p, s) : -1;
-        if (mate < 0 && m->n_boundary_edges > 0) continue;
+        if (mate < 0 && p->lattice->open) continue;
         if (mate < 0 || mate == port || p->mate[mate] >= 0) return unmatched(ctx, p, port);
         p->mate[port] = mate;
         p->mate[mate] = port;

@@ -13,6 +13,7 @@ static void grid_map_destroy(qc_object *object) {
     qc__free((void *)(uintptr_t)g->rotation);
     qc__free((void *)(uintptr_t)g->translation);
     qc__free((void *)(uintptr_t)g->holonomy);
+    qc__free((void *)(uintptr_t)g->axis);
     qc__free(g);
 }
 
@@ -76,7 +77,10 @@ static qc_status build(qc__grid_build *b, qc_grid_map *g) {
     if (!g->uv || !g->rotation || !g->translation || !g->holonomy) return QC_ERR_NOMEM;
     qc_status status = choose_bits(b);
     if (status == QC_OK) status = qc__grid_seams(b);
+    if (status == QC_OK) status = qc__grid_features(b);
+    g->axis = b->axis;
     if (status == QC_OK) status = qc__grid_vertices(b);
+    if (status == QC_OK) status = qc__grid_check_features(b);
     g->bits = b->bits;
     if (status == QC_OK) status = qc__grid_repair(b->ctx, g, b->grid_uv);
     if (status == QC_OK) count_orientations(g);
@@ -104,6 +108,7 @@ qc_status qc_grid_map_create(qc_ctx *ctx, const qc_corner_map *map, double toler
                             .mesh = m,
                             .uv = uv,
                             .known_rotation = map->rotation,
+                            .known_axis = map->axis,
                             .tolerance = tolerance > 0 ? tolerance : 0.05};
         status = build(&b, g);
     }
@@ -133,6 +138,7 @@ qc_status qc_grid_map_to_corner_map(qc_ctx *ctx, const qc_grid_map *grid, const 
                                             like ? like->cross : NULL, &map);
     qc__free(uv);
     if (status == QC_OK) status = qc_corner_map_set_rotation(ctx, map, grid->rotation);
+    if (status == QC_OK && grid->axis) status = qc_corner_map_set_axis(ctx, map, grid->axis);
     if (status != QC_OK) {
         qc_object_release(map);
         return status;

@@ -76,24 +76,45 @@ static inline bool qc__in_corner(const qc_grid_map *g, int32_t c, int d) {
                          g->mesh->twin[qc_next(c)] < 0, d);
 }
 
+/* --- features (features.c) -------------------------------------------------------------------- */
+
+/* Direction k in 0..3 of the image of halfedge h in the chart of its face; -1 = no feature. */
+static inline int qc__feature_direction(const qc_mesh *m, const int8_t *rotation,
+                                        const int8_t *axis, int32_t h) {
+    const int32_t e = m->halfedge_edge[h];
+    if (!axis || axis[e] < 0) return -1;
+    if (m->edge_halfedge[2 * (int64_t)e] == h) return axis[e];
+    return (axis[e] + rotation[e] + 2) & 3;
+}
+
+/* Coordinates of vertex v which are integers by the features at it, in the chart of vertex_corner:
+ * bit 0 = u, bit 1 = v. Both where a feature turns, branches or ends. */
+uint8_t qc__feature_levels(const qc_mesh *m, const int8_t *rotation, const int8_t *axis, int32_t v);
+
 /* What qc_grid_map_create works on; the arrays end up in the grid map. */
 typedef struct qc__grid_build {
     qc_ctx *ctx;
     const qc_mesh *mesh;
     const double *uv; /* 6 n_faces, shifted so that every component is near the origin */
     const int8_t *known_rotation; /* of the corner map, or NULL */
+    const int8_t *known_axis;     /* of the corner map, or NULL */
     double tolerance;             /* parameter units */
     int32_t bits;
     int32_t *grid_uv;
     int8_t *rotation, *holonomy;
     int32_t *translation;
+    int8_t *axis; /* NULL = no features */
 } qc__grid_build;
 
 /* rotation and translation of every edge (seams.c). */
 qc_status qc__grid_seams(qc__grid_build *b);
+/* axis: the given features, or boundary loops which lie on isolines (features.c). */
+qc_status qc__grid_features(qc__grid_build *b);
+/* After the rounding: the level of every feature edge is one integer, the same at both ends. */
+qc_status qc__grid_check_features(const qc__grid_build *b);
 /* grid_uv and holonomy, from one representative a vertex (vertices.c). */
 qc_status qc__grid_vertices(qc__grid_build *b);
-/* Undoes orientations which rounding spoiled: moves regular interior vertices by a few grid units
+/* Undoes orientations which rounding spoiled: moves regular vertices by a few grid units
  * (repair.c); coordinates which are integers stay. */
 qc_status qc__grid_repair(qc_ctx *ctx, qc_grid_map *g, int32_t *uv);
 /* Writes all corners of vertex v from the value p at its first corner. */

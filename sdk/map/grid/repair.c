@@ -1,6 +1,6 @@
 /* Slivers flipped or flattened by rounding (docs/theory/exact-grid.md): a vertex moves by a few
- * grid units inside its star. Regular interior vertices only; coordinates on isolines stay there.
- */
+ * grid units inside its star. Regular vertices only; coordinates on isolines stay there, so
+ * features do. */
 #include <stdlib.h>
 
 #include "sdk/map/grid/internal.h"
@@ -28,7 +28,7 @@ static int bad_faces(const qc_grid_map *g, int32_t v) {
     do {
         n += qc_grid_map_orientation(g, c / 3) <= 0;
         c = qc_corner_ccw(g->mesh, c);
-    } while (c != first);
+    } while (c >= 0 && c != first);
     return n;
 }
 
@@ -72,8 +72,7 @@ qc_status qc__grid_repair(qc_ctx *ctx, qc_grid_map *g, int32_t *uv) {
                 return QC_ERR_CANCELLED;
             for (int32_t c = 3 * t; c < 3 * t + 3 && qc_grid_map_orientation(g, t) <= 0; c++) {
                 const int32_t v = m->face_vertex[c];
-                if (g->holonomy[v] != 0 || qc_vertex_on_boundary(m, v) || !within_reach(g, c))
-                    continue;
+                if (g->holonomy[v] != 0 || !within_reach(g, c)) continue;
                 changed |= move_vertex(g, v, uv);
             }
         }

@@ -46,6 +46,11 @@ static qc__point twice_fixed_point(transform g) {
     }
 }
 
+/* x rounded to grid units, or to an integer. */
+static int64_t rounded(double x, int32_t bits, bool integer) {
+    return (int64_t)(integer ? ldexp(rint(x), bits) : rint(ldexp(x, bits)));
+}
+
 static qc_status representative(qc__grid_build *b, int32_t v, qc__point *out) {
     const transform g = around(b, v);
     const double *f = b->uv + 2 * (int64_t)b->mesh->vertex_corner[v];
@@ -57,7 +62,8 @@ static qc_status representative(qc__grid_build *b, int32_t v, qc__point *out) {
                             "the transitions around vertex %d do not close: a translation (%d, %d) "
                             "is left over",
                             (int)v, (int)g.t.u, (int)g.t.v);
-        *out = (qc__point){llrint(f[0] * (double)unit), llrint(f[1] * (double)unit)};
+        const uint8_t levels = qc__feature_levels(b->mesh, b->rotation, b->axis, v);
+        *out = (qc__point){rounded(f[0], b->bits, levels & 1), rounded(f[1], b->bits, levels & 2)};
         return QC_OK;
     }
     const qc__point p = twice_fixed_point(g);
@@ -98,8 +104,7 @@ static qc_status spread(qc__grid_build *b, int32_t v, qc__point p) {
     return QC_OK;
 }
 
-/* Axis directions in the sectors around an interior vertex; -1 when a face there is not positive.
- */
+/* Axis directions in the sectors around a vertex; -1 when a face there is not positive. */
 static int count_directions(const qc_grid_map *g, int32_t v) {
     const int32_t first = g->mesh->vertex_corner[v];
     int32_t c = first;
@@ -108,12 +113,23 @@ static int count_directions(const qc_grid_map *g, int32_t v) {
         if (qc_grid_map_orientation(g, c / 3) <= 0) return -1;
         for (int d = 0; d < 4; d++) n += qc__in_corner(g, c, d);
         c = qc_corner_ccw(g->mesh, c);
-    } while (c != first);
+    } while (c >= 0 && c != first);
     return n;
 }
 
+/* Axis directions about a vertex which is no cone: 4, or those of half a turn on the side of an
+ * aligned boundary; -1 = any number. */
+static int regular_directions(const qc__grid_build *b, int32_t v) {
+    if (!qc_vertex_on_boundary(b->mesh, v)) return 4;
+    const int32_t h = qc_prev(b->mesh->vertex_corner[v]);
+    const bool aligned = qc__feature_direction(b->mesh, b->rotation, b->axis, h) >= 0;
+    const uint8_t levels = qc__feature_levels(b->mesh, b->rotation, b->axis, v);
+    return aligned && (levels == 1 || levels == 2) ? 3 : -1;
+}
+
 /* A cone whose angle is 4 pi, 6 pi, ... has no holonomy, so nothing pinned it
- * (docs/theory/exact-grid.md): put it on its lattice point. */
+ * (docs/theory/exact-grid.md): put it on its lattice point. The same for 3 pi and so on on an
+ * aligned boundary. */
 static qc_status pin_full_turns(qc__grid_build *b) {
     const qc_mesh *m = b->mesh;
     const qc_grid_map view = {.mesh = m,
@@ -128,9 +144,10 @@ static qc_status pin_full_turns(qc__grid_build *b) {
     for (int32_t v = 0; v < m->n_vertices; v++) {
         if (v % 8192 == 0 && !qc__progress(b->ctx, 0.7 + 0.2 * v / m->n_vertices))
             return QC_ERR_CANCELLED;
-        if (b->holonomy[v] != 0 || qc_vertex_on_boundary(m, v)) continue;
+        const int regular = b->holonomy[v] != 0 ? -1 : regular_directions(b, v);
+        if (regular < 0) continue;
         const int n = count_directions(&view, v);
-        if (n < 0 || n == 4) continue;
+        if (n < 0 || n == regular) continue;
         const qc__point p = qc__grid_corner(&view, m->vertex_corner[v]);
         const double u = round((double)p.u / unit), w = round((double)p.v / unit);
         const double off = fmax(fabs((double)p.u / unit - u), fabs((double)p.v / unit - w));
@@ -141,7 +158,7 @@ static qc_status pin_full_turns(qc__grid_build *b) {
                 "the map makes %d quarter turns around vertex %d, which is %.3g parameter "
                 "units off the lattice: a cone there or next to it is folded in; try a "
                 "finer density or other integers",
-                n, (int)v, off);
+                n - (regular == 3), (int)v, off);
         const qc_status status =
             spread(b, v, (qc__point){(int64_t)(u * unit), (int64_t)(w * unit)});
         if (status != QC_OK) return status;

@@ -31,6 +31,7 @@ int32_t qc__guide_turns(const qc__guide *g, int32_t v) {
         guided_edges(g, c, &a, &b);
         sum += angle_between(a, b);
         const int32_t d = qc_corner_ccw(mesh, c);
+        if (d < 0) break;
         guided_edges(g, d, &next_a, &next_b);
         /* the shared edge in both charts, which differ by the rotation of the transition */
         const int32_t h = qc_next(c), e = mesh->halfedge_edge[h];
@@ -56,7 +57,7 @@ int32_t qc__map_turns(const qc__guide *g, int32_t v) {
         const qc_complex b = {f[2].re - f[0].re, f[2].im - f[0].im};
         sum += angle_between(a, b);
         c = qc_corner_ccw(m->mesh, c);
-    } while (c != start);
+    } while (c >= 0 && c != start);
     return (int32_t)lround(sum / quarter);
 }
 
@@ -84,9 +85,9 @@ static bool read_star(const qc__guide *g, int32_t v, star *s) {
         guided_edges(g, c, &a, &b);
         s->corner[s->n] = c;
         s->angle[s->n] = atan2(a.im, a.re);
-        s->anchor[s->n] = m->pinned[w];
+        s->anchor[s->n] = qc__pinned(m, w);
         s->bend[s->n] = 0;
-        if (m->pinned[w]) {
+        if (qc__pinned(m, w)) {
             const qc_complex p = qc__reduced_map_corner(m, m->value[v], c);
             const qc_complex q = qc__reduced_map_corner(m, m->value[w], n);
             const qc_complex d = {q.re - p.re, q.im - p.im};
@@ -123,6 +124,6 @@ void qc__lay_out_star(const qc__guide *g, int32_t v, double scale) {
         const double r = scale * hypot(e.re, e.im), angle = s.angle[j] + s.bend[j];
         const qc_complex local = {p.re + r * cos(angle) - m->offset[n].re,
                                   p.im + r * sin(angle) - m->offset[n].im};
-        m->value[w] = qc_quarter_turn(local, -m->turn[n]);
+        m->value[w] = qc__keep_fixed(m, w, qc_quarter_turn(local, -m->turn[n]));
     }
 }

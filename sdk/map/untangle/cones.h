@@ -15,10 +15,12 @@ typedef struct qc__guide {
     const qc_complex *edge;  /* 3 n_faces, tangent edges in units of the quad edge length  */
 } qc__guide;
 
-/* Quarter turns about interior vertex v: of the guiding field and of the map. */
+/* Quarter turns about vertex v, on the boundary of its open fan: of the guiding field and of the
+ * map. */
 int32_t qc__guide_turns(const qc__guide *guide, int32_t v);
 int32_t qc__map_turns(const qc__guide *guide, int32_t v);
-/* Puts the movable neighbours of v where the guiding field would have them, `scale` times as far.
+/* Puts the movable neighbours of interior vertex v where the guiding field would have them, `scale`
+ * times as far.
  */
 void qc__lay_out_star(const qc__guide *guide, int32_t v, double scale);
 

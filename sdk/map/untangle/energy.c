@@ -108,8 +108,9 @@ double qc__patch_energy(const qc__patch *p, const double *x, double *gradient) {
             const qc_complex at_corner = {gu.re * hat[k].re + gu.im * hat[k].im,
                                           gv.re * hat[k].re + gv.im * hat[k].im};
             const qc_complex at_vertex = qc_quarter_turn(at_corner, -p->map->turn[c]);
-            gradient[2 * (int64_t)j] += at_vertex.re;
-            gradient[2 * (int64_t)j + 1] += at_vertex.im;
+            const uint8_t fixed = p->map->fixed[p->vertex[j]];
+            if (!(fixed & 1)) gradient[2 * (int64_t)j] += at_vertex.re;
+            if (!(fixed & 2)) gradient[2 * (int64_t)j + 1] += at_vertex.im;
         }
     }
     return energy;

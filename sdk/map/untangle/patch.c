@@ -12,16 +12,20 @@ enum {
     PATIENCE = 4
 }; /* rounds without a better worst determinant before giving up               */
 
-/* Preconditioner: the Laplacian of the patch in the charts of its vertices, complex Hermitian. */
+/* Preconditioner: the Laplacian of the patch on the coordinates which move. Quarter turns between
+ * charts swap coordinates and their signs, so the matrix is real with a few entries a row. */
 typedef struct preconditioner {
     qc__patch *patch;
+    int32_t n;
+    int32_t *unknown; /* 2 n_vertices: number of the coordinate, -1 = fixed */
+    double *packed;   /* n */
     qc_symbolic *symbolic;
     qc_factor *factor;
 } preconditioner;
 
 typedef struct entry {
     int32_t row;
-    qc_complex value;
+    double value;
 } entry;
 
 static double patch_evaluate(void *user, const double *x, double *gradient) {
@@ -31,16 +35,20 @@ static double patch_evaluate(void *user, const double *x, double *gradient) {
 
 static qc_status patch_precondition(qc_ctx *ctx, void *user, double *x) {
     const preconditioner *p = user;
-    return qc_solve(ctx, p->factor, 1, (qc_complex *)(void *)x);
+    const int64_t n = 2 * (int64_t)p->patch->n_vertices;
+    for (int64_t i = 0; i < n; i++)
+        if (p->unknown[i] >= 0) p->packed[p->unknown[i]] = x[i];
+    const qc_status status = qc_solve_real(ctx, p->factor, 1, p->packed);
+    for (int64_t i = 0; i < n; i++) x[i] = p->unknown[i] >= 0 ? p->packed[p->unknown[i]] : 0.0;
+    return status;
 }
 
-/* Adds an off-diagonal entry of column j, merging duplicates: rows of a column are few. */
-static void add_entry(entry *column, int32_t *n, int32_t row, qc_complex value) {
+/* Adds an off-diagonal entry of a column, merging duplicates: rows of a column are few. */
+static void add_entry(entry *column, int32_t *n, int32_t row, double value) {
     int32_t i = 0;
     while (i < *n && column[i].row < row) i++;
     if (i < *n && column[i].row == row) {
-        column[i].value.re += value.re;
-        column[i].value.im += value.im;
+        column[i].value += value;
         return;
     }
     memmove(column + i + 1, column + i, sizeof *column * (size_t)(*n - i));
@@ -48,9 +56,10 @@ static void add_entry(entry *column, int32_t *n, int32_t row, qc_complex value) 
     ++*n;
 }
 
-/* Column j of the upper triangle; `column` has room for two entries a face at the vertex and one
- * more. */
-static int32_t laplacian_column(const qc__patch *p, int32_t j, entry *column) {
+/* Column of coordinate i (0 = u, 1 = v) of vertex j, upper triangle; `column` has room for two
+ * entries a face at the vertex and one more. */
+static int32_t laplacian_column(const preconditioner *pre, int32_t j, int i, entry *column) {
+    const qc__patch *p = pre->patch;
     const qc_mesh *mesh = p->map->mesh;
     const int32_t start = mesh->vertex_corner[p->vertex[j]];
     int32_t n = 0, c = start;
@@ -59,17 +68,21 @@ static int32_t laplacian_column(const qc__patch *p, int32_t j, entry *column) {
         const int32_t t = c / 3;
         const qc_complex *hat = p->hat + 3 * (int64_t)t;
         for (int32_t k = 0; k < 3; k++) {
-            const int32_t b = 3 * t + k, i = p->local[mesh->face_vertex[b]];
+            const int32_t b = 3 * t + k, l = p->local[mesh->face_vertex[b]];
             const double K = p->area[t] * (hat[c % 3].re * hat[k].re + hat[c % 3].im * hat[k].im);
             if (b == c) diagonal += K;
-            if (b == c || i < 0 || i > j) continue;
-            const qc_complex value = {K, 0}; /* conj(i^turn_i) K i^turn_j */
-            add_entry(column, &n, i, qc_quarter_turn(value, p->map->turn[c] - p->map->turn[b]));
+            if (b == c || l < 0 || l > j) continue;
+            /* i^-turn_l K i^turn_j on the unit vector of the coordinate */
+            const qc_complex unit = {i == 0 ? K : 0, i == 0 ? 0 : K};
+            const int turn = p->map->turn[c] - p->map->turn[b];
+            const qc_complex value = qc_quarter_turn(unit, turn);
+            const int other = (i + turn) & 1;
+            const int32_t row = pre->unknown[2 * (int64_t)l + other];
+            if (row >= 0) add_entry(column, &n, row, other ? value.im : value.re);
         }
         c = qc_corner_ccw(mesh, c);
     } while (c >= 0 && c != start);
-    const qc_complex shifted = {diagonal * (1 + 1e-6), 0};
-    add_entry(column, &n, j, shifted);
+    add_entry(column, &n, pre->unknown[2 * (int64_t)j + i], diagonal * (1 + 1e-6));
     return n;
 }
 
@@ -83,34 +96,54 @@ static int32_t valence(const qc_mesh *mesh, int32_t v) {
     return n;
 }
 
+static void number_unknowns(preconditioner *pre) {
+    const qc__patch *p = pre->patch;
+    for (int32_t j = 0; j < p->n_vertices; j++)
+        for (int i = 0; i < 2; i++) {
+            const bool fixed = p->map->fixed[p->vertex[j]] >> i & 1;
+            pre->unknown[2 * (int64_t)j + i] = fixed ? -1 : pre->n++;
+        }
+}
+
+/* Entries of the upper triangle, at most: of all columns, of the longest. */
+static int64_t room_for(const qc__patch *p, int64_t *longest) {
+    int64_t room = 0;
+    *longest = 0;
+    for (int32_t j = 0; j < p->n_vertices; j++) {
+        const int64_t need = 2 * (int64_t)valence(p->map->mesh, p->vertex[j]) + 2;
+        room += 2 * need;
+        if (need > *longest) *longest = need;
+    }
+    return room;
+}
+
 static qc_status factor_patch(qc_ctx *ctx, preconditioner *pre) {
     const qc__patch *p = pre->patch;
-    const int32_t n = p->n_vertices;
-    int64_t room = 0, largest = 0;
-    for (int32_t j = 0; j < n; j++) {
-        const int64_t need = 2 * (int64_t)valence(p->map->mesh, p->vertex[j]) + 2;
-        room += need;
-        if (need > largest) largest = need;
-    }
-    int64_t *colptr = QC__NEW(ctx, int64_t, n + 1);
+    pre->unknown = QC__NEW(ctx, int32_t, 2 * (int64_t)p->n_vertices);
+    if (!pre->unknown) return QC_ERR_NOMEM;
+    number_unknowns(pre);
+    int64_t longest, at = 0;
+    const int64_t room = room_for(p, &longest);
+    pre->packed = QC__NEW(ctx, double, pre->n);
+    int64_t *colptr = QC__NEW(ctx, int64_t, pre->n + 1);
     int32_t *row = QC__NEW(ctx, int32_t, room);
-    qc_complex *value = QC__NEW(ctx, qc_complex, room);
-    entry *column = QC__NEW(ctx, entry, largest);
-    qc_status status = colptr && row && value && column ? QC_OK : QC_ERR_NOMEM;
-    if (status == QC_OK) {
-        int64_t at = 0;
-        for (int32_t j = 0; j < n; j++) {
-            colptr[j] = at;
-            const int32_t entries = laplacian_column(p, j, column);
-            for (int32_t i = 0; i < entries; i++, at++) {
-                row[at] = column[i].row;
-                value[at] = column[i].value;
-            }
+    double *value = QC__NEW(ctx, double, room);
+    entry *column = QC__NEW(ctx, entry, longest);
+    qc_status status = pre->packed && colptr && row && value && column ? QC_OK : QC_ERR_NOMEM;
+    for (int32_t a = 0; status == QC_OK && a < 2 * p->n_vertices; a++) {
+        if (pre->unknown[a] < 0) continue;
+        colptr[pre->unknown[a]] = at;
+        const int32_t entries = laplacian_column(pre, a / 2, a & 1, column);
+        for (int32_t i = 0; i < entries; i++, at++) {
+            row[at] = column[i].row;
+            value[at] = column[i].value;
         }
-        colptr[n] = at;
-        const qc_hermitian A = {n, colptr, row, value};
-        status = qc_analyze(ctx, &A, NULL, &pre->symbolic);
-        if (status == QC_OK) status = qc_factorize(ctx, pre->symbolic, &A, &pre->factor);
+    }
+    if (status == QC_OK) {
+        colptr[pre->n] = at;
+        const qc_symmetric A = {pre->n, colptr, row, value};
+        status = qc_analyze_real(ctx, &A, NULL, &pre->symbolic);
+        if (status == QC_OK) status = qc_factorize_real(ctx, pre->symbolic, &A, &pre->factor);
     }
     qc__free(colptr);
     qc__free(row);
@@ -121,7 +154,7 @@ static qc_status factor_patch(qc_ctx *ctx, preconditioner *pre) {
 
 qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *p, const qc_untangle_options *options,
                              double *x) {
-    preconditioner pre = {p, NULL, NULL};
+    preconditioner pre = {.patch = p};
     qc_status status = factor_patch(ctx, &pre);
     const qc__lbfgs_problem problem = {2 * (int64_t)p->n_vertices, &pre, patch_evaluate,
                                        patch_precondition};
@@ -140,5 +173,7 @@ qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *p, const qc_untangle_option
     }
     qc_factor_free(pre.factor);
     qc_symbolic_free(pre.symbolic);
+    qc__free(pre.unknown);
+    qc__free(pre.packed);
     return status;
 }

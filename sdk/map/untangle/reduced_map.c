@@ -2,10 +2,12 @@
 #include "sdk/map/untangle/reduced_map.h"
 #include <math.h>
 
+#include "sdk/map/grid/internal.h"
+
 void qc__reduced_map_free(qc__reduced_map *map) {
     if (!map) return;
     qc__free(map->value);
-    qc__free(map->pinned);
+    qc__free(map->fixed);
     qc__free(map->turn);
     qc__free(map->offset);
     qc__free(map);
@@ -52,26 +54,31 @@ static void cross(const source *s, int32_t h, int8_t *turn, qc_complex *offset) 
     }
 }
 
-qc_status qc__reduced_map_create(qc_ctx *ctx, const qc_mesh *mesh, const double *uv,
-                                 const int8_t *rotation, const int8_t *holonomy, bool integer,
-                                 qc__reduced_map **out) {
-    const source s = {mesh, uv, rotation, integer};
+qc_status qc__reduced_map_create(qc_ctx *ctx, const qc_grid_map *grid, const double *uv,
+                                 bool integer, qc__reduced_map **out) {
+    const qc_mesh *mesh = grid->mesh;
+    const source s = {mesh, uv, grid->rotation, integer};
     const int64_t n_corners = 3 * (int64_t)mesh->n_faces;
     qc__reduced_map *m = QC__ZERO(ctx, qc__reduced_map, 1);
     if (!m) return QC_ERR_NOMEM;
     m->mesh = mesh;
     m->value = QC__NEW(ctx, qc_complex, mesh->n_vertices);
-    m->pinned = QC__NEW(ctx, uint8_t, mesh->n_vertices);
+    m->fixed = QC__NEW(ctx, uint8_t, mesh->n_vertices);
     m->turn = QC__NEW(ctx, int8_t, n_corners);
     m->offset = QC__NEW(ctx, qc_complex, n_corners);
-    if (!m->value || !m->pinned || !m->turn || !m->offset) {
+    if (!m->value || !m->fixed || !m->turn || !m->offset) {
         qc__reduced_map_free(m);
         return QC_ERR_NOMEM;
     }
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         const int32_t start = mesh->vertex_corner[v];
         m->value[v] = corner_uv(&s, start);
-        m->pinned[v] = holonomy[v] != 0;
+        m->fixed[v] = grid->holonomy[v] != 0
+                          ? QC__FIXED
+                          : qc__feature_levels(mesh, grid->rotation, grid->axis, v);
+        const qc_complex p = m->value[v];
+        if (integer && m->fixed[v] & 1) m->value[v].re = rint(p.re);
+        if (integer && m->fixed[v] & 2) m->value[v].im = rint(p.im);
         int8_t turn = 0;
         qc_complex offset = {0, 0};
         int32_t c = start;

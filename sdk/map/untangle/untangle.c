@@ -23,6 +23,7 @@ typedef struct untangler {
     const qc_mesh *mesh;
     qc_untangle_options options;
     const int8_t *rotation;  /* of the transitions, known from the first grid  */
+    const int8_t *axis;      /* of the features, or NULL                       */
     qc__reduced_map *map;    /* moves */
     qc__reduced_map *target; /* the rounded map */
     qc__guide guide;         /* cross NULL: the map does not tell         */
@@ -48,7 +49,7 @@ typedef struct untangler {
 /* --- neighbourhoods --------------------------------------------------------------------------- */
 
 static bool winds_wrong(const untangler *u, int32_t v) {
-    return u->guide.cross && u->map->pinned[v] &&
+    return u->guide.cross && qc__pinned(u->map, v) &&
            qc__guide_turns(&u->guide, v) != qc__map_turns(&u->guide, v);
 }
 
@@ -109,7 +110,7 @@ static void collect_patch(untangler *u, int32_t seed) {
             }
             for (int32_t k = 0; k < 3; k++) {
                 const int32_t w = mesh->face_vertex[3 * (int64_t)t + k];
-                if (u->distance[w] < 0 || u->map->pinned[w]) continue;
+                if (u->distance[w] < 0 || qc__pinned(u->map, w)) continue;
                 u->distance[w] = -1;
                 u->vertex[u->n_patch++] = w;
             }
@@ -135,7 +136,7 @@ static bool lay_out_wrong_cones(untangler *u) {
     bool any = false;
     for (int32_t i = 0; i < 3 * u->n_patch_faces; i++) {
         const int32_t v = u->mesh->face_vertex[3 * (int64_t)u->face[i / 3] + i % 3];
-        if (!u->map->pinned[v] || !winds_wrong(u, v)) continue;
+        if (qc_vertex_on_boundary(u->mesh, v) || !winds_wrong(u, v)) continue;
         any = true;
         qc__lay_out_star(&u->guide, v, u->star_scale);
         freeze_star(u, v, 1);
@@ -151,7 +152,7 @@ static int32_t count_bad(const untangler *u) {
         bad += qc__face_det(u->map, u->hat, t) <= 0;
         for (int32_t k = 0; k < 3; k++) {
             const int32_t v = u->mesh->face_vertex[3 * (int64_t)t + k];
-            bad += u->map->pinned[v] && winds_wrong(u, v);
+            bad += winds_wrong(u, v);
         }
     }
     return bad;
@@ -204,7 +205,7 @@ static qc_status untangle_patch(untangler *u) {
 static qc_status untangle_rings(untangler *u, int32_t rings, int32_t *bad) {
     *bad = mark_neighbourhood(u, rings);
     for (int32_t v = 0; v<u->mesh->n_vertices && * bad> 0; v++) {
-        if (u->distance[v] < 0 || u->map->pinned[v]) continue;
+        if (u->distance[v] < 0 || qc__pinned(u->map, v)) continue;
         collect_patch(u, v);
         const qc_status status = untangle_patch(u);
         if (status != QC_OK) return status;
@@ -228,6 +229,7 @@ static qc_status corners_of(untangler *u, const qc_corner_map *like, qc_corner_m
     qc_status status =
         qc_corner_map_create(u->ctx, u->mesh, uv, like->edge_length, like->cross, &map);
     if (status == QC_OK) status = qc_corner_map_set_rotation(u->ctx, map, u->rotation);
+    if (status == QC_OK && u->axis) status = qc_corner_map_set_axis(u->ctx, map, u->axis);
     qc__free(uv);
     if (status != QC_OK) {
         qc_object_release(map);
@@ -282,13 +284,19 @@ static qc_status make_guide(untangler *u, const qc_corner_map *map) {
     return QC_OK;
 }
 
+/* Whether the guiding field makes other than a full turn about v, or than half a turn on an aligned
+ * boundary. */
+static bool has_index(const untangler *u, int32_t v) {
+    if (!qc_vertex_on_boundary(u->mesh, v)) return qc__guide_turns(&u->guide, v) != 4;
+    return u->map->fixed[v] != 0 && qc__guide_turns(&u->guide, v) != 2;
+}
+
 /* Cones of full turns have no holonomy; the guiding field tells them, and they stay on their
  * lattice point. */
 static void pin_full_turns(untangler *u) {
     for (int32_t v = 0; v < u->mesh->n_vertices && u->guide.cross; v++) {
-        if (u->map->pinned[v] || qc_vertex_on_boundary(u->mesh, v)) continue;
-        if (qc__guide_turns(&u->guide, v) == 4) continue;
-        u->map->pinned[v] = u->target->pinned[v] = 1;
+        if (qc__pinned(u->map, v) || !has_index(u, v)) continue;
+        u->map->fixed[v] = u->target->fixed[v] = QC__FIXED;
         const qc_complex p = {rint(u->target->value[v].re), rint(u->target->value[v].im)};
         u->map->value[v] = u->target->value[v] = p;
     }
@@ -296,11 +304,9 @@ static void pin_full_turns(untangler *u) {
 
 static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_map *grid) {
     u->rotation = grid->rotation;
-    qc_status status = qc__reduced_map_create(u->ctx, map->mesh, map->uv, u->rotation,
-                                              grid->holonomy, true, &u->target);
-    if (status == QC_OK)
-        status = qc__reduced_map_create(u->ctx, map->mesh, map->uv, u->rotation, grid->holonomy,
-                                        true, &u->map);
+    u->axis = grid->axis;
+    qc_status status = qc__reduced_map_create(u->ctx, grid, map->uv, true, &u->target);
+    if (status == QC_OK) status = qc__reduced_map_create(u->ctx, grid, map->uv, true, &u->map);
     if (status == QC_OK) status = allocate(u);
     if (status == QC_OK)
         status = qc__untangle_targets(u->ctx, map->mesh, unit_length(map), u->hat, u->area);
@@ -370,7 +376,9 @@ static void plan_drift(untangler *u, const qc__reduced_map *relaxed, qc_complex 
                                           (end->offset[n].re - relaxed->offset[n].re),
                                       own.im + (end->offset[c].im - relaxed->offset[c].im) -
                                           (end->offset[n].im - relaxed->offset[n].im)};
-            if (!u->map->pinned[w]) drift[w] = qc_quarter_turn(there, -end->turn[n]);
+            const qc_complex d = qc_quarter_turn(there, -end->turn[n]);
+            if (!(u->map->fixed[w] & 1)) drift[w].re = d.re;
+            if (!(u->map->fixed[w] & 2)) drift[w].im = d.im;
             c = qc_corner_ccw(u->mesh, c);
         } while (c >= 0 && c != start);
     }
@@ -387,11 +395,11 @@ static void advance(untangler *u, const qc__reduced_map *relaxed, const qc_compl
         if (to >= 1) u->map->offset[c] = b;
     }
     for (int32_t v = 0; v < u->mesh->n_vertices; v++) {
-        const bool fixed = u->map->pinned[v];
-        const qc_complex p = fixed ? relaxed->value[v] : u->map->value[v];
-        const double by = fixed ? to : to - from;
-        u->map->value[v] = (qc_complex){p.re + by * drift[v].re, p.im + by * drift[v].im};
-        if (fixed && to >= 1) u->map->value[v] = end->value[v];
+        const qc_complex a = relaxed->value[v], b = end->value[v], by = drift[v];
+        qc_complex *p = &u->map->value[v];
+        const uint8_t fixed = u->map->fixed[v];
+        p->re = fixed & 1 ? (to >= 1 ? b.re : a.re + to * by.re) : p->re + (to - from) * by.re;
+        p->im = fixed & 2 ? (to >= 1 ? b.im : a.im + to * by.im) : p->im + (to - from) * by.im;
     }
 }
 
@@ -431,8 +439,7 @@ static qc_status continue_from(untangler *u, const qc_corner_map *map, const qc_
     qc_complex *drift = QC__NEW(u->ctx, qc_complex, u->mesh->n_vertices);
     qc_status status = stable && drift ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK)
-        status = qc__reduced_map_create(u->ctx, map->mesh, map->relaxed, u->rotation,
-                                        grid->holonomy, false, &relaxed);
+        status = qc__reduced_map_create(u->ctx, grid, map->relaxed, false, &relaxed);
     if (status == QC_OK) {
         plan_drift(u, relaxed, drift);
         status = walk_from_relaxed(u, relaxed, drift, stable);
