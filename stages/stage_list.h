@@ -2,6 +2,7 @@
 QC_STAGE(qc_stage_repair)
 QC_STAGE(qc_stage_features)
 QC_STAGE(qc_stage_size)
+QC_STAGE(qc_stage_split_features)
 QC_STAGE(qc_stage_field_curvature)
 QC_STAGE(qc_stage_field_smooth)
 QC_STAGE(qc_stage_field_smoothest)

@@ -27,7 +27,9 @@ typedef struct run {
 /* The first steps of the default pipeline. */
 static int build(run *r, const settings *s) {
     static const char *const curvature[][2] = {{"repair", "qc.repair"},
+                                               {"size", "qc.size"},
                                                {"features", "qc.features"},
+                                               {"refine", "qc.split.features"},
                                                {"curvature", "qc.field.curvature"},
                                                {"smooth", "qc.field.smooth"},
                                                {NULL, NULL}};

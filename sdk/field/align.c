@@ -1,4 +1,4 @@
-/* Soft alignment to feature edges: the faces on both sides of one get its direction. */
+/* Alignment to feature edges: the faces on both sides of one get its direction. */
 #include "internal.h"
 
 /* Direction of face t along its feature edges as a fourth power; edges which contradict each other
@@ -21,8 +21,9 @@ static qc__cplx feature_direction(const qc_mesh *mesh, const qc_complex *tangent
 
 qc_status qc_field_align(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge, double strength,
                          qc_complex *x, double *weight, uint8_t *trusted) {
-    if (!(strength >= 0) || !isfinite(strength))
-        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "the strength %g is negative", strength);
+    if (!(strength >= 0))
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "the strength %g is negative or no number",
+                        strength);
     qc_complex *tangent = QC__NEW(ctx, qc_complex, 3 * (size_t)mesh->n_faces);
     qc_status status = tangent ? qc_tangent_edges(ctx, mesh, tangent) : QC_ERR_NOMEM;
     for (int32_t t = 0; !status && t < mesh->n_faces; t++) {

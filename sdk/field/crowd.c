@@ -2,10 +2,11 @@
 #include "crowd.h"
 
 qc_status qc__crowd_create(qc_ctx *ctx, const qc_mesh *mesh, const int32_t *index4,
-                           qc__crowd *out) {
+                           const uint8_t *barred, qc__crowd *out) {
     int32_t V = mesh->n_vertices;
     *out = (qc__crowd){mesh,
                        index4,
+                       barred,
                        QC__NEW(ctx, double, V),
                        QC__NEW(ctx, int32_t, V),
                        QC__ZERO(ctx, uint8_t, V),
@@ -33,7 +34,7 @@ typedef struct ring {
 } ring;
 
 static void improve(qc__crowd *c, ring *r, int32_t q, double reach, double radius) {
-    if (!(reach <= radius) || !(reach < c->reach[q])) return;
+    if (!(reach <= radius) || !(reach < c->reach[q]) || (c->barred && c->barred[q])) return;
     if (isinf(c->reach[q])) c->ball[r->found++] = q;
     c->reach[q] = reach;
     if (c->waiting[q]) return;

@@ -8,13 +8,15 @@
 typedef struct qc__crowd {
     const qc_mesh *mesh;
     const int32_t *index4; /* n_vertices, kept by the caller                                  */
+    const uint8_t *barred; /* optional, n_vertices, kept by the caller: no path leads through    */
     double *reach;    /* n_vertices, scratch: path length from the centre, infinite between calls */
     int32_t *ball;    /* n_vertices, scratch: the vertices found last                    */
     uint8_t *waiting; /* n_vertices, scratch: zero between calls                         */
     int32_t *queue;   /* n_vertices, scratch, a ring                                     */
 } qc__crowd;
 /* On error free as well. */
-qc_status qc__crowd_create(qc_ctx *ctx, const qc_mesh *mesh, const int32_t *index4, qc__crowd *out);
+qc_status qc__crowd_create(qc_ctx *ctx, const qc_mesh *mesh, const int32_t *index4,
+                           const uint8_t *barred, qc__crowd *out);
 void qc__crowd_free(qc__crowd *crowd);
 
 /* Fills ball with the vertices within `radius` of p along edges (p first), returns their number. */

@@ -33,9 +33,9 @@ static qc_status copy_crosses(qc_ctx *ctx, int32_t n, const qc_complex *x, qc_co
 
 static qc_status check_weights(qc_ctx *ctx, int32_t n, const double *weight) {
     for (int32_t t = 0; weight && t < n; t++)
-        if (!(weight[t] >= 0) || !isfinite(weight[t]))
+        if (!(weight[t] >= 0))
             return qc__fail(ctx, QC_ERR_ARGUMENT, t,
-                            "the weight of face %d is negative or not finite", (int)t);
+                            "the weight of face %d is negative or no number", (int)t);
     return QC_OK;
 }
 

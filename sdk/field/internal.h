@@ -62,6 +62,12 @@ static inline double qc__reference_length(const qc_mesh *mesh) {
 void qc__field_match(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *rho, const qc_complex *x,
                      int8_t *m, double *theta);
 
+/* Angle of corner c between its two edges, from the same vectors as the transport, so that sums of
+ * angles and theta are multiples of pi/2 up to rounding even in slivers. */
+static inline double qc__corner_angle(const qc_complex *edge, int32_t c) {
+    return fabs(qc__arg(-qc__c(edge[qc_next(c)]) * conj(qc__c(edge[qc_prev(c)]))));
+}
+
 /* Index of an interior vertex in quarters from the theta of its edges: an integer up to rounding.
  */
 double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
@@ -74,12 +80,19 @@ typedef struct qc__smoother {
     qc__face_pattern pattern;
     double lambda;
     double *pull;   /* n_faces: (1 - lambda) w A / l^2                                        */
-    int32_t *fixed; /* n_components: face with alpha = 0, -1 = none                           */
+    uint8_t *fixed; /* n_faces: 1 = alpha is 0: infinite weight, or one in want of alignment  */
     double *value;  /* of the matrix                                                          */
     double *theta, *alpha;   /* n_edges, n_faces: work space of the solves                    */
+    double *matched;         /* n_edges: theta of the next round                              */
+    const uint8_t *aligned;  /* n_edges, may be NULL: hard features                           */
     const qc_complex *guide; /* n_faces                                                       */
     qc_factor *factor;
 } qc__smoother;
+/* Faces whose cross is kept exactly: trusted, of infinite weight (hard features). */
+static inline bool qc__kept(const double *weight, const uint8_t *trusted, int32_t t) {
+    return weight && isinf(weight[t]) && (!trusted || trusted[t]);
+}
+
 qc_status qc__smoother_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                               const uint8_t *trusted, double lambda, qc__smoother *out);
 void qc__smoother_free(qc__smoother *smoother);

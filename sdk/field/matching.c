@@ -1,5 +1,5 @@
 /* Matching and indices of a cross field (thesis (5.1), signs of docs/conventions.md). */
-#include "internal.h"
+#include "sector.h"
 
 typedef struct matching_object {
     qc_matching matching;
@@ -60,12 +60,6 @@ static void measure_given(const qc_mesh *mesh, const qc_complex *rho, const qc_c
     }
 }
 
-/* Angle of corner c between its two edges, from the same vectors as the transport, so that the sum
- * below is a multiple of pi/2 up to rounding even in slivers. */
-static double corner_angle(const qc_complex *edge, int32_t c) {
-    return fabs(qc__arg(-qc__c(edge[qc_next(c)]) * conj(qc__c(edge[qc_prev(c)]))));
-}
-
 /* (K(p) + sum of +-theta) / (2 pi) in quarters; +theta where s -> t is counter-clockwise about p.
  */
 double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
@@ -74,7 +68,7 @@ double qc__vertex_index4(const qc_mesh *mesh, const qc_complex *edge, const doub
     double sum = 2 * QC__PI;
     do {
         int32_t h = qc_next(c), e = mesh->halfedge_edge[h];
-        sum -= corner_angle(edge, c);
+        sum -= qc__corner_angle(edge, c);
         sum += mesh->edge_halfedge[2 * e] == h ? theta[e] : -theta[e];
         c = qc_corner_ccw(mesh, c);
     } while (c != first);
@@ -129,9 +123,11 @@ static qc_status fill(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
             measure_given(mesh, rho, field->x, o->m, o->theta);
         } else {
             qc__field_match(ctx, mesh, rho, field->x, o->m, o->theta);
+            if (o->axis)
+                status = qc__sectors_open(ctx, mesh, field->aligned, edge, o->theta, o->m, NULL);
         }
         if (o->axis) measure_axes(field, edge, o->axis);
-        status = measure_indices(ctx, mesh, edge, o);
+        if (!status) status = measure_indices(ctx, mesh, edge, o);
     }
     qc__free(edge);
     qc__free(rho);

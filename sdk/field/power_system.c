@@ -8,7 +8,7 @@
 
 void qc__power_free(qc__power_system *s) {
     void *arrays[] = {s->value, s->mass, s->pull, s->stiff, s->heavy, s->aligned,
-                      s->z,     s->work, s->norm, s->mu,    s->old};
+                      s->kept,  s->z,    s->work, s->norm,  s->mu,    s->old};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) qc__free(arrays[i]);
     qc__connection_free(&s->c);
     qc__face_pattern_free(&s->pattern);
@@ -26,11 +26,12 @@ static qc_status allocate(qc_ctx *ctx, qc__power_system *s) {
     s->stiff = QC__ZERO(ctx, double, C);
     s->heavy = QC__ZERO(ctx, double, C);
     s->aligned = QC__ZERO(ctx, uint8_t, C);
+    s->kept = QC__NEW(ctx, uint8_t, F);
     s->norm = QC__ZERO(ctx, double, C);
     s->mu = QC__ZERO(ctx, double, C);
     s->old = QC__ZERO(ctx, double, C);
     return s->value && s->mass && s->pull && s->z && s->work && s->stiff && s->heavy &&
-                   s->aligned && s->norm && s->mu && s->old
+                   s->aligned && s->kept && s->norm && s->mu && s->old
                ? QC_OK
                : QC_ERR_NOMEM;
 }
@@ -42,11 +43,12 @@ static void set_weights(qc__power_system *s, const double *weight, const uint8_t
     double l = qc__reference_length(mesh), *total = s->norm;
     for (int32_t t = 0; t < mesh->n_faces; t++) {
         int32_t i = mesh->face_component[t];
-        bool kept = (weight || trusted) && (!trusted || trusted[t]);
+        bool pulled = (weight || trusted) && (!trusted || trusted[t]);
+        s->kept[t] = qc__kept(weight, trusted, t);
         s->mass[t] = s->c.area[t] / (l * l);
-        s->pull[t] = kept ? alignment * (weight ? weight[t] : 1) * s->mass[t] : 0;
+        s->pull[t] = pulled && !s->kept[t] ? alignment * (weight ? weight[t] : 1) * s->mass[t] : 0;
         s->heavy[i] += s->mass[t];
-        total[i] += s->pull[t];
+        total[i] += s->kept[t] ? INFINITY : s->pull[t];
     }
     for (int32_t e = 0; e < mesh->n_edges; e++)
         s->stiff[mesh->face_component[mesh->edge_halfedge[2 * e] / 3]] += 2 * s->c.omega[e];
@@ -81,8 +83,24 @@ void qc__power_fill(qc__power_system *s, double shift, double inertia) {
         qc__cplx off = s->c.omega[e] * conj(qc__fourth(qc__c(s->c.rho[e]))); /* row a, column b */
         s->value[colptr[a + 1] - 1].re += s->c.omega[e];
         s->value[colptr[b + 1] - 1].re += s->c.omega[e];
+        if (s->kept[a] || s->kept[b]) continue;
         s->value[s->pattern.entry[e]].re -= creal(off);
         s->value[s->pattern.entry[e]].im -= cimag(off);
+    }
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        if (s->kept[t]) s->value[colptr[t + 1] - 1].re = 1;
+}
+
+void qc__power_add_kept(qc__power_system *s, const qc_complex *guide) {
+    const qc_mesh *mesh = s->mesh;
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        if (s->kept[t]) s->work[t] = qc__fourth(qc__unit(qc__c(guide[t])));
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        if (s->pattern.entry[e] < 0) continue;
+        int32_t a = mesh->edge_halfedge[2 * e] / 3, b = mesh->edge_halfedge[2 * e + 1] / 3;
+        qc__cplx turn = qc__fourth(qc__c(s->c.rho[e]));
+        if (s->kept[a] && !s->kept[b]) s->work[b] += s->c.omega[e] * turn * s->work[a];
+        if (s->kept[b] && !s->kept[a]) s->work[a] += s->c.omega[e] * conj(turn) * s->work[b];
     }
 }
 

@@ -14,6 +14,7 @@ typedef struct qc__power_system {
     double *mass, *pull;     /* n_faces: M, t W                                                */
     double *stiff, *heavy;   /* n_components: traces of A and of M                             */
     uint8_t *aligned;        /* n_components: enough alignment to make A + t W definite         */
+    uint8_t *kept;           /* n_faces: infinite weight, z = guide^4 is no unknown             */
     qc__cplx *z, *work;      /* n_faces                                                        */
     double *norm, *mu, *old; /* n_components; mu: Rayleigh quotient of z                       */
     qc_symbolic *symbolic;
@@ -28,6 +29,8 @@ void qc__power_free(qc__power_system *s);
 /* value = A + t W + diagonal of (shift M trace(A) / trace(M) in components without alignment,
  * inertia M everywhere). */
 void qc__power_fill(qc__power_system *s, double shift, double inertia);
+/* work += what the kept faces contribute to the equations of their neighbours; work = z there. */
+void qc__power_add_kept(qc__power_system *s, const qc_complex *guide);
 /* Factor of the matrix last filled. */
 qc_status qc__power_factorise(qc_ctx *ctx, qc__power_system *s);
 

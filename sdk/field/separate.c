@@ -2,7 +2,8 @@
  * more in each round, are solved for again by smoothness alone (Knoeppel et al. 2013; flow of
  * Viertel and Osting 2019), which cancels opposite neighbours and spreads the index of a vertex
  * over several. Pairs which the curvature of a spike of the mesh keeps alive are cancelled by
- * prescribing their indices. */
+ * prescribing their indices. Faces beside hard features stay, and so do the sectors at their
+ * vertices. */
 #include "crowd.h"
 #include "region.h"
 
@@ -22,13 +23,15 @@ typedef struct separator {
     int32_t *index4;         /* n_vertices                                                 */
     uint8_t *inside;         /* n_faces                                                    */
     uint8_t *seen;           /* n_vertices                                                 */
+    uint8_t *kept, *hard;    /* n_faces, n_vertices: on hard features                      */
     qc_complex *x;           /* n_faces, the result                                        */
     qc__cplx *z;             /* n_faces, of the region                                     */
     int32_t *before, *after; /* n_faces: crowding of each patch                     */
 } separator;
 
 static void separator_free(separator *s) {
-    void *arrays[] = {s->theta, s->index4, s->inside, s->seen, s->x, s->z, s->before, s->after};
+    void *arrays[] = {s->theta, s->index4, s->inside, s->seen,   s->kept,
+                      s->hard,  s->x,      s->z,      s->before, s->after};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) qc__free(arrays[i]);
     qc__connection_free(&s->c);
     qc__crowd_free(&s->crowd);
@@ -36,25 +39,36 @@ static void separator_free(separator *s) {
 }
 
 static void measure_index(separator *s, int32_t p) {
-    bool inner = !qc_vertex_on_boundary(s->mesh, p);
+    bool inner = !qc_vertex_on_boundary(s->mesh, p) && !s->hard[p];
     s->index4[p] = inner ? (int32_t)round(qc__vertex_index4(s->mesh, s->c.edge, s->theta, p)) : 0;
 }
 
-static qc_status prepare(qc_ctx *ctx, separator *s, const qc_complex *x) {
+static void mark_features(separator *s, const uint8_t *aligned) {
+    for (int32_t h = 0; h < 3 * s->mesh->n_faces; h++) {
+        if (!aligned[s->mesh->halfedge_edge[h]]) continue;
+        s->kept[h / 3] = 1;
+        s->hard[qc_halfedge_start(s->mesh, h)] = s->hard[qc_halfedge_end(s->mesh, h)] = 1;
+    }
+}
+
+static qc_status prepare(qc_ctx *ctx, separator *s, const uint8_t *aligned, const qc_complex *x) {
     size_t F = (size_t)s->mesh->n_faces, V = (size_t)s->mesh->n_vertices;
     s->theta = QC__NEW(ctx, double, s->mesh->n_edges);
     s->index4 = QC__ZERO(ctx, int32_t, V);
     s->inside = QC__ZERO(ctx, uint8_t, F);
     s->seen = QC__ZERO(ctx, uint8_t, V);
+    s->kept = QC__ZERO(ctx, uint8_t, F);
+    s->hard = QC__ZERO(ctx, uint8_t, V);
     s->x = QC__NEW(ctx, qc_complex, F);
     s->z = QC__NEW(ctx, qc__cplx, F);
     s->before = QC__NEW(ctx, int32_t, F);
     s->after = QC__NEW(ctx, int32_t, F);
-    if (!s->theta || !s->index4 || !s->inside || !s->seen || !s->x || !s->z || !s->before ||
-        !s->after)
+    if (!s->theta || !s->index4 || !s->inside || !s->seen || !s->kept || !s->hard || !s->x ||
+        !s->z || !s->before || !s->after)
         return QC_ERR_NOMEM;
+    if (aligned) mark_features(s, aligned);
     qc_status status = qc__connection_create(ctx, s->mesh, &s->c);
-    if (!status) status = qc__crowd_create(ctx, s->mesh, s->index4, &s->crowd);
+    if (!status) status = qc__crowd_create(ctx, s->mesh, s->index4, s->hard, &s->crowd);
     if (!status) status = qc__region_create(ctx, s->mesh, &s->c, &s->region);
     if (status) return status;
     memcpy(s->x, x, F * sizeof *x);
@@ -91,6 +105,7 @@ static bool mark_crowds(separator *s, int level) {
         any = true;
     }
     for (int i = 0; any && i < level; i++) widen(s);
+    for (int32_t t = 0; t < s->mesh->n_faces; t++) s->inside[t] &= (uint8_t)!s->kept[t];
     return any;
 }
 
@@ -162,7 +177,7 @@ static void spread_index(separator *s, int32_t p) {
     do {
         int32_t excess = qc__index_excess(s->index4[p]), q = mesh->face_vertex[qc_next(c)];
         int32_t e = mesh->halfedge_edge[qc_prev(c)];
-        if (excess && s->index4[q] == 0 && !qc_vertex_on_boundary(mesh, q))
+        if (excess && s->index4[q] == 0 && !qc_vertex_on_boundary(mesh, q) && !s->hard[q])
             move_quarter(s, e, s->index4[p] > 0 ? p : q);
         c = qc_corner_ccw(mesh, c);
     } while (c >= 0 && c != first);
@@ -194,6 +209,7 @@ static qc_status solve_region(qc_ctx *ctx, separator *s, int way) {
 static qc_status try_region(qc_ctx *ctx, separator *s, int way, uint8_t *trusted) {
     const qc__region *r = &s->region;
     qc__region_set(&s->region, s->inside);
+    if (r->n == 0) return QC_OK;
     measure_patches(s, s->before);
     qc_status status = solve_region(ctx, s, way);
     if (status) return status;
@@ -224,15 +240,16 @@ static int32_t report(qc_ctx *ctx, const separator *s) {
     return left;
 }
 
-qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance, uint8_t *trusted,
-                            qc_complex *x, int32_t *left) {
+qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
+                            const uint8_t *aligned, uint8_t *trusted, qc_complex *x,
+                            int32_t *left) {
     if (!(distance >= 0) || !isfinite(distance))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "the distance %g is negative or not finite",
                         distance);
     size_t F = (size_t)mesh->n_faces;
     separator s = {.mesh = mesh, .distance = distance};
     uint8_t *kept = trusted ? QC__NEW(ctx, uint8_t, F) : NULL;
-    qc_status status = kept || !trusted ? prepare(ctx, &s, x) : QC_ERR_NOMEM;
+    qc_status status = kept || !trusted ? prepare(ctx, &s, aligned, x) : QC_ERR_NOMEM;
     if (!status && kept) memcpy(kept, trusted, F);
     for (int i = 0; !status && i < WAYS * LEVELS && mark_crowds(&s, i / WAYS); i++) {
         status = try_region(ctx, &s, i % WAYS, kept);

@@ -3,12 +3,13 @@
  *       + (1 - lambda) sum_t w_t A_t / l^2 (alpha_t + d_t)^2 (5.3) where d_t is the angle by which
  * the face already differs from its guide. omega is a pure number, and so is w_t A_t / l^2 with l
  * of stability.c: lambda means the same at every scale and resolution. Features narrower than about
- * l sqrt(2 lambda / ((1 - lambda) w)) are smoothed away.
+ * l sqrt(2 lambda / ((1 - lambda) w)) are smoothed away. Faces of infinite weight (hard features)
+ * are no unknowns: their alpha is zero.
  *
  * The matrix (5.4) does not depend on the matching, so its factor serves all rounds: solve, rotate,
  * match again. Each step lowers the energy (a new matching makes |theta| smaller, and a turn of d
  * by pi/2 makes |d| smaller), so the rounds end. */
-#include "internal.h"
+#include "sector.h"
 
 #include <string.h>
 
@@ -25,12 +26,9 @@ void qc__smoother_free(qc__smoother *s) {
     qc__free(s->fixed);
     qc__free(s->value);
     qc__free(s->theta);
+    qc__free(s->matched);
     qc__free(s->alpha);
     qc_factor_free(s->factor);
-}
-
-static bool is_fixed(const qc__smoother *s, int32_t t) {
-    return s->fixed[s->mesh->face_component[t]] == t;
 }
 
 /* Weights of the alignment term and the faces which must be fixed for want of it. */
@@ -45,18 +43,19 @@ static qc_status set_pull(qc_ctx *ctx, qc__smoother *s, const double *weight,
         for (int32_t t = 0; t < mesh->n_faces; t++) {
             bool aligned = (weight || trusted) && (!trusted || trusted[t]);
             double w = aligned ? weight ? weight[t] : 1 : 0;
-            s->pull[t] = (1 - s->lambda) * w * s->c.area[t] / (l * l);
-            alignment[mesh->face_component[t]] += s->pull[t];
+            s->fixed[t] = qc__kept(weight, trusted, t);
+            s->pull[t] = s->fixed[t] ? 0 : (1 - s->lambda) * w * s->c.area[t] / (l * l);
+            alignment[mesh->face_component[t]] += s->fixed[t] ? INFINITY : s->pull[t];
         }
         for (int32_t e = 0; e < mesh->n_edges; e++)
             smoothing[mesh->face_component[mesh->edge_halfedge[2 * e] / 3]] +=
                 s->lambda * s->c.omega[e];
-        for (int32_t i = 0; i < mesh->n_components; i++) s->fixed[i] = -1;
         for (int32_t t = 0; t < mesh->n_faces; t++) {
             int32_t i = mesh->face_component[t];
             if (alignment[i] > ALIGNMENT_MIN * smoothing[i]) continue;
             s->pull[t] = 0;
-            if (s->fixed[i] < 0) s->fixed[i] = t;
+            s->fixed[t] = alignment[i] >= 0;
+            alignment[i] = -1; /* the first face only */
         }
     }
     qc__free(alignment);
@@ -70,14 +69,14 @@ static void fill_matrix(qc__smoother *s) {
     const int64_t *colptr = s->pattern.colptr;
     memset(s->value, 0, (size_t)colptr[mesh->n_faces] * sizeof *s->value);
     for (int32_t t = 0; t < mesh->n_faces; t++)
-        s->value[colptr[t + 1] - 1] = is_fixed(s, t) ? s->lambda : s->pull[t];
+        s->value[colptr[t + 1] - 1] = s->fixed[t] ? s->lambda : s->pull[t];
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         if (s->pattern.entry[e] < 0) continue;
         int32_t a = mesh->edge_halfedge[2 * e] / 3, b = mesh->edge_halfedge[2 * e + 1] / 3;
         double w = s->lambda * s->c.omega[e];
         s->value[colptr[a + 1] - 1] += w;
         s->value[colptr[b + 1] - 1] += w;
-        if (!is_fixed(s, a) && !is_fixed(s, b)) s->value[s->pattern.entry[e]] -= w;
+        if (!s->fixed[a] && !s->fixed[b]) s->value[s->pattern.entry[e]] -= w;
     }
 }
 
@@ -97,11 +96,13 @@ static qc_status prepare(qc_ctx *ctx, qc__smoother *s, const double *weight,
     if (!status) status = qc__face_pattern_create(ctx, mesh, &s->pattern);
     if (status) return status;
     s->pull = QC__NEW(ctx, double, mesh->n_faces);
-    s->fixed = QC__NEW(ctx, int32_t, mesh->n_components);
+    s->fixed = QC__NEW(ctx, uint8_t, mesh->n_faces);
     s->value = QC__NEW(ctx, double, s->pattern.colptr[mesh->n_faces]);
     s->theta = QC__NEW(ctx, double, mesh->n_edges);
+    s->matched = QC__NEW(ctx, double, mesh->n_edges);
     s->alpha = QC__NEW(ctx, double, mesh->n_faces);
-    if (!s->pull || !s->fixed || !s->value || !s->theta || !s->alpha) return QC_ERR_NOMEM;
+    if (!s->pull || !s->fixed || !s->value || !s->theta || !s->matched || !s->alpha)
+        return QC_ERR_NOMEM;
     status = set_pull(ctx, s, weight, trusted);
     if (status) return status;
     fill_matrix(s);
@@ -134,8 +135,15 @@ static void fill_right_hand_side(qc__smoother *s, const qc_complex *x) {
         s->alpha[mesh->edge_halfedge[2 * e] / 3] += b;
         s->alpha[mesh->edge_halfedge[2 * e + 1] / 3] -= b;
     }
-    for (int32_t i = 0; i < mesh->n_components; i++)
-        if (s->fixed[i] >= 0) s->alpha[s->fixed[i]] = 0;
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        if (s->fixed[t]) s->alpha[t] = 0;
+}
+
+/* theta of the straightest matching, with open sectors at the features. */
+static qc_status match(qc_ctx *ctx, const qc__smoother *s, const qc_complex *x, double *theta) {
+    qc__field_match(ctx, s->mesh, s->c.rho, x, NULL, theta);
+    if (!s->aligned) return QC_OK;
+    return qc__sectors_open(ctx, s->mesh, s->aligned, s->c.edge, theta, NULL, NULL);
 }
 
 /* One round; *changed: the straightest matching differs from the one solved for. */
@@ -145,21 +153,26 @@ static qc_status smooth_round(qc_ctx *ctx, qc__smoother *s, qc_complex *x, bool 
     qc_status status = qc_solve_real(ctx, s->factor, 1, s->alpha);
     if (status) return status;
     for (int32_t t = 0; t < mesh->n_faces; t++)
-        x[t] = qc__z(qc__unit(qc__c(x[t]) * (cos(s->alpha[t]) + sin(s->alpha[t]) * I)));
+        if (!s->fixed[t])
+            x[t] = qc__z(qc__unit(qc__c(x[t]) * (cos(s->alpha[t]) + sin(s->alpha[t]) * I)));
+    status = match(ctx, s, x, s->matched);
     *changed = false;
-    for (int32_t e = 0; e < mesh->n_edges; e++) {
+    for (int32_t e = 0; !status && e < mesh->n_edges; e++) {
         if (s->pattern.entry[e] < 0) continue;
-        double turned = s->theta[e] - s->alpha[mesh->edge_halfedge[2 * e] / 3] +
-                        s->alpha[mesh->edge_halfedge[2 * e + 1] / 3];
-        if (fabs(turned) > QC__PI / 4 * (1 + 1e-9)) *changed = true;
+        const double turned = s->theta[e] - s->alpha[mesh->edge_halfedge[2 * e] / 3] +
+                              s->alpha[mesh->edge_halfedge[2 * e + 1] / 3];
+        if (fabs(turned) > QC__PI / 4 * (1 + 1e-9) && fabs(turned - s->matched[e]) > 0.1)
+            *changed = true;
     }
-    qc__field_match(ctx, mesh, s->c.rho, x, NULL, s->theta);
-    return QC_OK;
+    double *swap = s->theta;
+    s->theta = s->matched;
+    s->matched = swap;
+    return status;
 }
 
 qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *guide,
-                          const double *weight, const uint8_t *trusted, double lambda,
-                          int32_t rounds, qc_complex *x) {
+                          const double *weight, const uint8_t *trusted, const uint8_t *aligned,
+                          double lambda, int32_t rounds, qc_complex *x) {
     if (!(lambda >= 0 && lambda <= 1))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "lambda = %g is not in [0, 1]", lambda);
     if (rounds < 1) return QC_OK;
@@ -170,8 +183,9 @@ qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *gu
     if (!status) {
         bool changed = true;
         s.guide = guide ? guide : x; /* x itself changes at the very end only */
+        s.aligned = aligned;
         memcpy(result, x, (size_t)mesh->n_faces * sizeof *x);
-        qc__field_match(ctx, mesh, s.c.rho, x, NULL, s.theta);
+        status = match(ctx, &s, x, s.theta);
         for (int32_t i = 0; !status && changed && i < rounds; i++) {
             status = smooth_round(ctx, &s, result, &changed);
             if (!status && !qc__progress(ctx, (i + 1.0) / rounds)) status = QC_ERR_CANCELLED;

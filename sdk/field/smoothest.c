@@ -29,6 +29,7 @@ static qc_status factorise_shifted(qc_ctx *ctx, qc__power_system *s) {
 static qc_status solve_aligned(qc_ctx *ctx, qc__power_system *s, const qc_complex *guide) {
     for (int32_t t = 0; t < s->mesh->n_faces; t++)
         s->work[t] = s->pull[t] * qc__fourth(qc__unit(qc__c(guide[t])));
+    qc__power_add_kept(s, guide);
     qc_status status = qc_solve(ctx, s->factor, 1, (qc_complex *)s->work);
     for (int32_t t = 0; !status && t < s->mesh->n_faces; t++)
         if (s->aligned[s->mesh->face_component[t]]) s->z[t] = s->work[t];
@@ -43,6 +44,7 @@ static qc_status flow_step(qc_ctx *ctx, qc__power_system *s, const qc_complex *g
         s->work[t] = inertia * s->mass[t] * s->z[t];
         if (s->pull[t] > 0) s->work[t] += s->pull[t] * qc__fourth(qc__unit(qc__c(guide[t])));
     }
+    qc__power_add_kept(s, guide);
     qc_status status = qc_solve(ctx, s->factor, 1, (qc_complex *)s->work);
     *change = 0;
     for (int32_t t = 0; !status && t < F; t++) {
@@ -88,6 +90,7 @@ qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const double *wei
     qc_status status = qc__power_create(ctx, mesh, weight, trusted, alignment, &s);
     if (!status) status = solve(ctx, &s, x, detail);
     for (int32_t t = 0; !status && t < mesh->n_faces; t++) {
+        if (s.kept[t]) continue;
         double angle = qc__arg(s.z[t]) / 4;
         x[t] = (qc_complex){cos(angle), sin(angle)};
     }

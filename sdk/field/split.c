@@ -1,25 +1,76 @@
 /* Refines the mesh under a matching until a piecewise linear map with the cones on lattice points
  * can be locally injective. A sector of k quarter turns needs more than k/2 triangles, as each
  * image angle is below pi; and the ends of an edge are not both to be pinned, as their images may
- * coincide or lie in a direction which another pinned neighbour has too. */
+ * coincide or lie in a direction which another pinned neighbour has too. Hard features pin in the
+ * same way, but for the edges along them. */
+#include "sector.h"
 #include "split.h"
 
-/* Edges which join two cones, and the link of vertices with too few triangles for their angle of
- * 4 - index4 quarter turns. Returns how many there are. */
-static int32_t mark_edges(const qc_matching *matching, int32_t *valence, uint8_t *split) {
+/* Vertices which the map pins: cones, and those on hard features. */
+enum { CONE = 1, HARD = 2 };
+
+static void mark_pinned(const qc_matching *matching, uint8_t *pinned) {
     const qc_mesh *mesh = matching->field->mesh;
-    const int32_t *index4 = matching->index4;
-    int32_t count = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) pinned[v] = matching->index4[v] ? CONE : 0;
+    for (int32_t e = 0; matching->axis && e < mesh->n_edges; e++)
+        for (int i = 0; i < 2; i++)
+            if (matching->axis[e] >= 0) pinned[mesh->edge_vertex[2 * e + i]] |= HARD;
+}
+
+/* The link of vertices inside which have too few triangles for their angle of 4 - index4 quarter
+ * turns. */
+static void mark_links(const qc_matching *matching, const uint8_t *pinned, int32_t *valence,
+                       uint8_t *split) {
+    const qc_mesh *mesh = matching->field->mesh;
     for (int32_t c = 0; c < 3 * mesh->n_faces; c++) valence[mesh->face_vertex[c]]++;
-    for (int32_t e = 0; e < mesh->n_edges; e++)
-        split[e] = index4[mesh->edge_vertex[2 * e]] && index4[mesh->edge_vertex[2 * e + 1]];
     for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
         const int32_t v = mesh->face_vertex[c];
-        if (2 * valence[v] <= 4 - index4[v] && !qc_vertex_on_boundary(mesh, v))
+        if (2 * valence[v] <= 4 - matching->index4[v] && !qc_vertex_on_boundary(mesh, v) &&
+            !(pinned[v] & HARD))
             split[mesh->halfedge_edge[c]] = 1;
     }
-    for (int32_t e = 0; e < mesh->n_edges; e++) count += split[e];
-    return count;
+}
+
+/* The same for sectors of k quarter turns at hard features. */
+static qc_status mark_sectors(qc_ctx *ctx, const qc_matching *matching, uint8_t *split) {
+    const qc_mesh *mesh = matching->field->mesh;
+    qc_complex *edge = QC__NEW(ctx, qc_complex, 3 * (size_t)mesh->n_faces);
+    qc__sectors all = {0, NULL};
+    qc_status status = edge ? qc_tangent_edges(ctx, mesh, edge) : QC_ERR_NOMEM;
+    if (!status)
+        status =
+            qc__sectors_create(ctx, mesh, matching->field->aligned, edge, matching->theta, &all);
+    for (int32_t i = 0; i < all.n; i++) {
+        const qc__sector *s = &all.sector[i];
+        if (2 * s->n > s->turns) continue;
+        for (int32_t j = 0, c = s->first; j < s->n; j++, c = qc_corner_ccw(mesh, c))
+            split[mesh->halfedge_edge[c]] = 1;
+    }
+    qc__sectors_free(&all);
+    qc__free(edge);
+    return status;
+}
+
+static qc_status mark_edges(qc_ctx *ctx, const qc_matching *matching, uint8_t *split, bool *any) {
+    const qc_mesh *mesh = matching->field->mesh;
+    uint8_t *pinned = QC__NEW(ctx, uint8_t, mesh->n_vertices);
+    int32_t *valence = QC__ZERO(ctx, int32_t, mesh->n_vertices);
+    qc_status status = pinned && valence ? QC_OK : QC_ERR_NOMEM;
+    if (!status) {
+        mark_pinned(matching, pinned);
+        for (int32_t e = 0; e < mesh->n_edges; e++) {
+            const uint8_t *ends[2] = {&pinned[mesh->edge_vertex[2 * e]],
+                                      &pinned[mesh->edge_vertex[2 * e + 1]]};
+            split[e] = *ends[0] && *ends[1] && !(matching->axis && matching->axis[e] >= 0);
+        }
+        mark_links(matching, pinned, valence, split);
+        if (matching->axis) status = mark_sectors(ctx, matching, split);
+    }
+    *any = false;
+    for (int32_t e = 0; !status && e < mesh->n_edges; e++) *any = *any || split[e];
+    qc__free(pinned);
+    qc__free(valence);
+    return status;
 }
 
 static qc_status split_field(qc_ctx *ctx, const qc_face_field *old, const qc__bisection *b,
@@ -28,33 +79,30 @@ static qc_status split_field(qc_ctx *ctx, const qc_face_field *old, const qc__bi
     qc_complex *x = QC__NEW(ctx, qc_complex, n);
     double *weight = old->weight ? QC__NEW(ctx, double, n) : NULL;
     uint8_t *trusted = old->trusted ? QC__NEW(ctx, uint8_t, n) : NULL;
+    uint8_t *aligned = old->aligned ? QC__NEW(ctx, uint8_t, b->mesh->n_edges) : NULL;
+    qc_face_field *field = NULL;
     qc_status status = QC_ERR_NOMEM;
-    if (x && (weight || !old->weight) && (trusted || !old->trusted)) {
+    if (x && (weight || !old->weight) && (trusted || !old->trusted) && (aligned || !old->aligned)) {
         for (size_t t = 0; t < n; t++) {
             const int32_t p = b->parent[t];
             x[t] = qc__z(qc__c(old->x[p]) * qc__c(b->turn[t]));
             if (weight) weight[t] = old->weight[p];
             if (trusted) trusted[t] = old->trusted[p];
         }
-        status = qc_face_field_create(ctx, b->mesh, x, weight, trusted, out);
+        status = qc_face_field_create(ctx, b->mesh, x, weight, trusted, &field);
+    }
+    if (!status && aligned) {
+        qc__bisection_flags(b, old->mesh, old->aligned, aligned);
+        status = qc_face_field_set_aligned(ctx, field, aligned);
     }
     qc__free(x);
     qc__free(weight);
     qc__free(trusted);
-    return status;
-}
-
-static qc_status split_sizing(qc_ctx *ctx, const qc_sizing *old, const qc__bisection *b,
-                              qc_sizing **out) {
-    double *length = NULL;
-    if (old->length) {
-        length = QC__NEW(ctx, double, b->mesh->n_faces);
-        if (!length) return QC_ERR_NOMEM;
-        for (int32_t t = 0; t < b->mesh->n_faces; t++) length[t] = old->length[b->parent[t]];
-    }
-    const qc_status status =
-        qc_sizing_create(ctx, b->mesh, old->edge_length, old->target_quads, length, out);
-    qc__free(length);
+    qc__free(aligned);
+    if (status)
+        qc_object_release(field);
+    else
+        *out = field;
     return status;
 }
 
@@ -103,7 +151,7 @@ static qc_status split_all(qc_ctx *ctx, const qc_matching *matching, const qc_si
     qc_matching *m = NULL;
     qc_status status = qc__bisect_edges(ctx, matching->field->mesh, split, b);
     if (!status && !qc__progress(ctx, 0.5)) status = QC_ERR_CANCELLED;
-    if (!status) status = split_sizing(ctx, sizing, b, &s);
+    if (!status) status = qc__bisection_sizing(ctx, b, sizing, &s);
     if (!status) status = split_matching(ctx, matching, b, &m);
     if (status) {
         qc_object_release(s);
@@ -120,11 +168,11 @@ qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching, const qc_s
     if (sizing->mesh != old)
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
                         "the sizing and the matching are of different meshes");
-    int32_t *valence = QC__ZERO(ctx, int32_t, old->n_vertices);
     uint8_t *split = QC__NEW(ctx, uint8_t, old->n_edges);
     qc__bisection b = {NULL, NULL, NULL, NULL};
-    qc_status status = valence && split ? QC_OK : QC_ERR_NOMEM;
-    if (!status && mark_edges(matching, valence, split) == 0) {
+    bool any = false;
+    qc_status status = split ? mark_edges(ctx, matching, split, &any) : QC_ERR_NOMEM;
+    if (!status && !any) {
         *mesh = qc_object_retain(old);
         *sizing_out = qc_object_retain(sizing);
         *matching_out = qc_object_retain(matching);
@@ -133,7 +181,6 @@ qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching, const qc_s
         if (!status) *mesh = qc_object_retain(b.mesh);
     }
     qc__bisection_free(&b);
-    qc__free(valence);
     qc__free(split);
     return status;
 }

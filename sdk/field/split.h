@@ -20,4 +20,12 @@ qc_status qc__bisect_edges(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *spli
                            qc__bisection *out);
 void qc__bisection_free(qc__bisection *bisection);
 
+/* The flags of the old edges on their halves (any bits), 0 inside the old faces. old: n_edges of
+ * the old mesh, out: of the new one. */
+void qc__bisection_flags(const qc__bisection *b, const qc_mesh *old_mesh, const uint8_t *old,
+                         uint8_t *out);
+/* The same lengths on the new mesh. */
+qc_status qc__bisection_sizing(qc_ctx *ctx, const qc__bisection *b, const qc_sizing *old,
+                               qc_sizing **out);
+
 #endif

@@ -151,6 +151,28 @@ qc_status qc__bisect_edges(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *spli
     return status;
 }
 
+void qc__bisection_flags(const qc__bisection *b, const qc_mesh *old_mesh, const uint8_t *old,
+                         uint8_t *out) {
+    for (int32_t e = 0; e < b->mesh->n_edges; e++) {
+        const int32_t h = b->parent_halfedge[b->mesh->edge_halfedge[2 * e]];
+        out[e] = h < 0 ? 0 : old[old_mesh->halfedge_edge[h]];
+    }
+}
+
+qc_status qc__bisection_sizing(qc_ctx *ctx, const qc__bisection *b, const qc_sizing *old,
+                               qc_sizing **out) {
+    double *length = NULL;
+    if (old->length) {
+        length = QC__NEW(ctx, double, b->mesh->n_faces);
+        if (!length) return QC_ERR_NOMEM;
+        for (int32_t t = 0; t < b->mesh->n_faces; t++) length[t] = old->length[b->parent[t]];
+    }
+    const qc_status status =
+        qc_sizing_create(ctx, b->mesh, old->edge_length, old->target_quads, length, out);
+    qc__free(length);
+    return status;
+}
+
 void qc__bisection_free(qc__bisection *bisection) {
     qc_object_release(bisection->mesh);
     qc__free(bisection->parent);

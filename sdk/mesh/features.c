@@ -1,4 +1,6 @@
 /* Feature edges: the boundary, creases by dihedral angle, and edges given as vertex pairs. */
+#include <string.h>
+
 #include "sdk/mesh/internal.h"
 
 static void features_destroy(qc_object *object) {
@@ -89,19 +91,20 @@ static qc_status count_features(qc_ctx *ctx, qc_features *f, uint8_t *vertex) {
     return QC_OK;
 }
 
-qc_status qc_features_detect(qc_ctx *ctx, const qc_mesh *m, double angle, int32_t n_lines,
-                             const int32_t *line, qc_features **out) {
+qc_status qc_features_create(qc_ctx *ctx, const qc_mesh *m, const uint8_t *edge, bool hard,
+                             qc_features **out) {
     qc_features *f = QC__ZERO(ctx, qc_features, 1);
     if (!f) return QC_ERR_NOMEM;
     qc_object_init(&f->object, QC_TYPE_FEATURES, features_destroy);
     f->mesh = qc_object_retain(m);
-    uint8_t *edge = QC__ZERO(ctx, uint8_t, m->n_edges);
-    f->edge = edge;
-    uint8_t *vertex = QC__ZERO(ctx, uint8_t, m->n_vertices);
+    f->hard = hard;
+    uint8_t *copy = QC__NEW(ctx, uint8_t, m->n_edges);
+    f->edge = copy;
+    uint8_t *vertex = QC__NEW(ctx, uint8_t, m->n_vertices);
     f->vertex = vertex;
-    qc_status status = edge && vertex ? mark_creases(ctx, m, angle, edge) : QC_ERR_NOMEM;
-    if (status == QC_OK) {
-        mark_lines(ctx, m, n_lines, line, edge);
+    qc_status status = QC_ERR_NOMEM;
+    if (copy && vertex) {
+        memcpy(copy, edge, (size_t)m->n_edges);
         status = count_features(ctx, f, vertex);
     }
     if (status != QC_OK) {
@@ -110,4 +113,16 @@ qc_status qc_features_detect(qc_ctx *ctx, const qc_mesh *m, double angle, int32_
     }
     *out = f;
     return QC_OK;
+}
+
+qc_status qc_features_detect(qc_ctx *ctx, const qc_mesh *m, double angle, int32_t n_lines,
+                             const int32_t *line, qc_features **out) {
+    uint8_t *edge = QC__ZERO(ctx, uint8_t, m->n_edges);
+    qc_status status = edge ? mark_creases(ctx, m, angle, edge) : QC_ERR_NOMEM;
+    if (status == QC_OK) {
+        mark_lines(ctx, m, n_lines, line, edge);
+        status = qc_features_create(ctx, m, edge, false, out);
+    }
+    qc__free(edge);
+    return status;
 }

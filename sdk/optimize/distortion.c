@@ -17,8 +17,9 @@ static bool allocate(qc_ctx *ctx, qc_distortion *d) {
     d->angle = QC__NEW(ctx, double, F *QC__TRIALS);
     d->turned = QC__NEW(ctx, qc_complex, F * QC__TRIALS);
     d->frozen = QC__ZERO(ctx, uint8_t, d->mesh->n_components);
-    return d->frozen && d->cotangent && d->m && d->index4 && d->bend && d->alpha && d->x &&
-           d->angle && d->turned;
+    d->hard = QC__ZERO(ctx, uint8_t, d->mesh->n_vertices);
+    return d->hard && d->frozen && d->cotangent && d->m && d->index4 && d->bend && d->alpha &&
+           d->x && d->angle && d->turned;
 }
 
 static bool allocate_unknowns(qc_ctx *ctx, qc_distortion *d) {
@@ -67,9 +68,17 @@ static void find_frozen(qc_distortion *d) {
             d->frozen[d->mesh->face_component[d->mesh->edge_halfedge[2 * e] / 3]] = 1;
 }
 
+static void find_hard(qc_distortion *d) {
+    const uint8_t *aligned = d->start->field->aligned;
+    for (int32_t e = 0; aligned && e < d->mesh->n_edges; e++)
+        for (int i = 0; i < 2; i++)
+            if (aligned[e]) d->hard[d->mesh->edge_vertex[2 * e + i]] = 1;
+}
+
 bool qc_distortion_can_flip(const qc_distortion *d, int32_t e) {
-    const int32_t *h = d->mesh->edge_halfedge + 2 * e;
-    return h[1] >= 0 && !d->frozen[d->mesh->face_component[h[0] / 3]];
+    const int32_t *h = d->mesh->edge_halfedge + 2 * e, *v = d->mesh->edge_vertex + 2 * e;
+    return h[1] >= 0 && !d->frozen[d->mesh->face_component[h[0] / 3]] && !d->hard[v[0]] &&
+           !d->hard[v[1]];
 }
 
 static qc_status factorise(qc_ctx *ctx, qc_distortion *d) {
@@ -93,6 +102,7 @@ static qc_status prepare(qc_ctx *ctx, qc_distortion *d, const qc_sizing *sizing,
     if (status) return status;
     d->n = d->matrix->A.n;
     find_frozen(d);
+    find_hard(d);
     copy_start(d, sizing);
     if (d->n == 0) return QC_OK;
     if (!allocate_unknowns(ctx, d)) return QC_ERR_NOMEM;
@@ -137,7 +147,7 @@ void qc_distortion_free(qc_distortion *d) {
     if (!d) return;
     void *const blocks[] = {d->cotangent, d->side,  d->m,      d->index4, d->bend,
                             d->alpha,     d->x,     d->angle,  d->turned, d->r,
-                            d->curl,      d->reach, d->sparse, d->frozen};
+                            d->curl,      d->reach, d->sparse, d->frozen, d->hard};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     qc__smoother_free(&d->smoother);
     qc_stiffness_free(d->matrix);
@@ -251,6 +261,7 @@ qc_status qc_distortion_matching(qc_ctx *ctx, const qc_distortion *d, qc_matchin
     if (!m) return QC_ERR_NOMEM;
     match_turns(d, m);
     qc_status status = qc_face_field_create(ctx, d->mesh, d->x, old->weight, old->trusted, &field);
+    if (!status && old->aligned) status = qc_face_field_set_aligned(ctx, field, old->aligned);
     if (!status) status = qc_matching_create(ctx, field, m, out);
     qc_object_release(field);
     qc__free(m);

@@ -59,7 +59,7 @@ void qc__weak_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step fli
 }
 
 bool qc__face_is_fixed(const qc_distortion *d, int32_t t) {
-    return d->smoother.fixed[d->mesh->face_component[t]] == t;
+    return d->smoother.fixed[t];
 }
 
 double qc__flip_bend(const qc_distortion *d, qc_flip_step flip, int32_t *s, int32_t *t) {

@@ -30,6 +30,7 @@ struct qc_distortion {
     qc_stiffness *matrix; /* L*, values kept up to date                                        */
     int32_t n;            /* its size                                                          */
     uint8_t *frozen;      /* n_components: closed with trivial holonomy at the start           */
+    uint8_t *hard;        /* n_vertices: 1 on hard features, whose sectors keep their turns     */
     qc_factor *factor;    /* of L*                                                             */
     qc_complex *r;        /* n: weak curl                                                      */
     bool stale; /* the factor is not that of the matrix: a factorisation was interrupted        */

@@ -141,7 +141,7 @@ qc_status qc__prepare_slope(qc_ctx *ctx, const qc_distortion *d, const qc_comple
         slope[e->s] += cimag(w * conj(qc__c(d->x[e->s])) * qc__c(e->in_s));
         slope[e->t] += cimag(w * conj(qc__c(d->x[e->t])) * qc__c(e->in_t));
     }
-    for (int32_t c = 0; c < d->mesh->n_components; c++)
-        if (d->smoother.fixed[c] >= 0) slope[d->smoother.fixed[c]] = 0;
+    for (int32_t t = 0; t < d->mesh->n_faces; t++)
+        if (qc__face_is_fixed(d, t)) slope[t] = 0;
     return qc_solve_real(ctx, d->smoother.factor, 1, slope);
 }

@@ -116,8 +116,8 @@ qc_status qc__check_flips(qc_ctx *ctx, const qc_distortion *d, int32_t n,
         const int32_t e = flip[i].edge;
         if (e < 0 || e >= d->mesh->n_edges || !qc_distortion_can_flip(d, e))
             return qc__fail(ctx, QC_ERR_ARGUMENT, e,
-                            "edge %d cannot be flipped: it is on the boundary or in a component "
-                            "with trivial holonomy",
+                            "edge %d cannot be flipped: it is on the boundary, at a hard feature "
+                            "or in a component with trivial holonomy",
                             (int)e);
         if (flip[i].step != 1 && flip[i].step != -1)
             return qc__fail(ctx, QC_ERR_ARGUMENT, e, "step %d of edge %d is neither 1 nor -1",

@@ -36,15 +36,19 @@ static void *made(const qc_bag *before, const qc_bag *bag, const char *type) {
     return object == qc_bag_latest(before, type) ? NULL : qc_object_retain(object);
 }
 
-/* The latest field on the component itself: a matching on a refined mesh has a field of its own. */
-static qc_face_field *field_on(const qc_mesh *mesh, const qc_bag *bag) {
+/* The latest field on the component itself, else the latest on a refinement of it, brought back. */
+static qc_status field_on(qc_ctx *ctx, const qc_mesh *mesh, const qc_bag *bag,
+                          qc_face_field **out) {
+    const qc_face_field *latest = qc_bag_latest(bag, QC_TYPE_FACE_FIELD);
     for (uint32_t i = qc_bag_count(bag); i-- > 0;) {
         const qc_object *object = qc_bag_get(bag, qc_bag_name(bag, i));
         if (strcmp(object->type, QC_TYPE_FACE_FIELD) != 0) continue;
         const qc_face_field *field = (const qc_face_field *)object;
-        if (field->mesh == mesh) return qc_object_retain(field);
+        if (field->mesh != mesh) continue;
+        *out = qc_object_retain(field);
+        return QC_OK;
     }
-    return NULL;
+    return latest ? qc__source_field(ctx, mesh, latest, out) : QC_OK;
 }
 
 qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_mesh *mesh,
@@ -52,9 +56,9 @@ qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const 
     const qc_corner_map *map = qc_bag_latest(bag, QC_TYPE_CORNER_MAP);
     all->mesh[c] = qc_object_retain(map ? map->mesh : mesh);
     all->quads[c] = made(before, bag, QC_TYPE_POLYGON_MESH);
-    all->field[c] = field_on(mesh, bag);
     all->report[c] = made(before, bag, QC_TYPE_REPORT);
-    return map ? qc_corner_map_to_polygons(ctx, map, &all->uv[c]) : QC_OK;
+    const qc_status status = field_on(ctx, mesh, bag, &all->field[c]);
+    return status == QC_OK && map ? qc_corner_map_to_polygons(ctx, map, &all->uv[c]) : status;
 }
 
 /* Union of the parts which are there, in order; NULL when there is none. With source != NULL the

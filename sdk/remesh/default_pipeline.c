@@ -7,8 +7,8 @@ typedef struct step {
     const char *name, *stage;
 } step;
 
-static const step before_field[] = {
-    {"repair", "qc.repair"}, {"features", "qc.features"}, {"size", "qc.size"}};
+static const step before_field[] = {{"repair", "qc.repair"}, {"size", "qc.size"}};
+static const step feature_steps[] = {{"features", "qc.features"}, {"refine", "qc.split.features"}};
 static const step computed_field[] = {{"curvature", "qc.field.curvature"},
                                       {"smooth", "qc.field.smooth"}};
 static const step imported_field[] = {{"field", "qc.field.import"}};
@@ -79,6 +79,7 @@ static qc_status set_seeds(qc_pipeline *pipeline, uint64_t seed) {
 
 static qc_status fill(qc_ctx *ctx, qc_pipeline *pipeline, const qc_default_pipeline_options *o) {
     qc_status status = APPEND(pipeline, before_field);
+    if (status == QC_OK && o->crease_angle >= 0) status = APPEND(pipeline, feature_steps);
     if (status == QC_OK)
         status =
             o->field_path ? APPEND(pipeline, imported_field) : APPEND(pipeline, computed_field);
@@ -90,7 +91,6 @@ static qc_status fill(qc_ctx *ctx, qc_pipeline *pipeline, const qc_default_pipel
         status = qc_pipeline_set(pipeline, "field", "file", o->field_path);
     if (status == QC_OK && o->crease_angle > 0)
         status = set_real(pipeline, "features", "angle", o->crease_angle);
-    if (status == QC_OK && o->crease_angle < 0) status = qc_pipeline_remove(pipeline, 1);
     if (status == QC_OK && o->seed != 0) status = set_seeds(pipeline, o->seed);
     return status;
 }

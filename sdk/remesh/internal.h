@@ -62,14 +62,17 @@ typedef struct qc__collection {
 } qc__collection;
 qc_status qc__collection_create(qc_ctx *ctx, int32_t n, qc__collection *out);
 void qc__collection_clear(qc__collection *all, int32_t n);
-/* Takes over what bag holds beyond `before`, the bag the run of component c began with. Only a
- * field on `mesh`, the component itself, is taken. */
+/* Takes over what bag holds beyond `before`, the bag the run of component c began with. A field is
+ * that on `mesh`, the component itself, else brought there from a refinement of it. */
 qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_mesh *mesh,
                              const qc_bag *before, const qc_bag *bag);
 /* Makes the barycentric coordinates of the merged quads those in the faces of parts->mesh where a
  * component was refined. */
 qc_status qc__source_coordinates(qc_ctx *ctx, const qc__collection *all, const qc__parts *parts,
                                  qc_polygon_mesh *quads);
+/* The field of a refinement of `mesh` on that: the mean cross of the parts of each face. */
+qc_status qc__source_field(qc_ctx *ctx, const qc_mesh *mesh, const qc_face_field *field,
+                           qc_face_field **out);
 qc_status qc__collection_merge(qc_ctx *ctx, const qc__collection *all, const qc__parts *parts,
                                qc_remesh_result *result);
 

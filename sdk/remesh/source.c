@@ -1,4 +1,6 @@
-/* Where the vertices of quads lie on the input, when the map was made on a refinement of it. */
+/* Where the vertices of quads lie on the input, and what its field is, when the map was made on a
+ * refinement of it. */
+#include <complex.h>
 #include <math.h>
 
 #include "sdk/remesh/internal.h"
@@ -65,18 +67,23 @@ static bool project(const qc_mesh *mesh, int32_t t, const double p[3], double we
     return true;
 }
 
-/* Of the triangles of a polygon the one which holds p best. */
-static void place(const qc_mesh *mesh, const by_source *s, int32_t source, const double p[3],
-                  double weight[3]) {
+/* Of the triangles of a polygon the one which holds p best, and the coordinates of p there; -1 =
+ * none.
+ */
+static int32_t place(const qc_mesh *mesh, const by_source *s, int32_t source, const double p[3],
+                     double weight[3]) {
     double best = -INFINITY, w[3];
-    if (source < 0 || source >= s->n) return;
+    int32_t found = -1;
+    if (source < 0 || source >= s->n) return -1;
     for (int32_t t = s->first[source]; t >= 0; t = s->next[t]) {
         if (!project(mesh, t, p, w)) continue;
         const double least = fmin(w[0], fmin(w[1], w[2]));
         if (least <= best) continue;
         best = least;
+        found = t;
         for (int k = 0; k < 3; k++) weight[k] = w[k];
     }
+    return found;
 }
 
 static void place_part(const qc_mesh *mesh, const by_source *s, const qc_mesh *refined,
@@ -114,4 +121,74 @@ qc_status qc__source_coordinates(qc_ctx *ctx, const qc__collection *all, const q
     qc__free(s.first);
     qc__free(s.next);
     return QC_OK;
+}
+
+/* --- the field ------------------------------------------------------------------------------- */
+
+/* Adds the fourth power of the cross of face t, weighted by area, to that of the face below it. */
+static void add_cross(const qc_mesh *mesh, const by_source *s, const qc_face_field *field,
+                      int32_t t, const double *fine, const double *coarse, double _Complex *sum) {
+    const qc_mesh *refined = field->mesh;
+    const double *re = fine + 6 * (int64_t)t;
+    double middle[3], e[2][3], n[3], w[3];
+    for (int i = 0; i < 3; i++) {
+        middle[i] = 0;
+        for (int k = 0; k < 3; k++) middle[i] += corner(refined, t, k)[i] / 3;
+        for (int k = 0; k < 2; k++)
+            e[k][i] = corner(refined, t, k + 1)[i] - corner(refined, t, 0)[i];
+    }
+    cross(e[0], e[1], n);
+    const int32_t f = place(mesh, s, refined->source_face ? refined->source_face[t] : t, middle, w);
+    if (f < 0) return;
+    const double *axes = coarse + 6 * (int64_t)f;
+    double x = 0, y = 0;
+    for (int i = 0; i < 3; i++) {
+        const double d = field->x[t].re * re[i] + field->x[t].im * re[3 + i];
+        x += d * axes[i];
+        y += d * axes[3 + i];
+    }
+    const double _Complex z = x + y * I;
+    sum[f] += sqrt(dot(n, n)) * z * z * z * z;
+}
+
+/* Real and imaginary axis of each face, 6 numbers. */
+static qc_status frames(qc_ctx *ctx, const qc_mesh *mesh, double *out) {
+    const size_t n = 3 * (size_t)mesh->n_faces;
+    double *axes = QC__NEW(ctx, double, 2 * n);
+    qc_status status = axes ? qc_tangent_frames(ctx, mesh, axes, axes + n) : QC_ERR_NOMEM;
+    for (size_t i = 0; status == QC_OK && i < n; i++) {
+        out[6 * (i / 3) + i % 3] = axes[i];
+        out[6 * (i / 3) + 3 + i % 3] = axes[n + i];
+    }
+    qc__free(axes);
+    return status;
+}
+
+qc_status qc__source_field(qc_ctx *ctx, const qc_mesh *mesh, const qc_face_field *field,
+                           qc_face_field **out) {
+    const qc_mesh *refined = field->mesh;
+    by_source s = {0, NULL, NULL};
+    double _Complex *sum = QC__ZERO(ctx, double _Complex, mesh->n_faces);
+    qc_complex *x = QC__NEW(ctx, qc_complex, mesh->n_faces);
+    double *fine = QC__NEW(ctx, double, 6 * (int64_t)refined->n_faces);
+    double *coarse = QC__NEW(ctx, double, 6 * (int64_t)mesh->n_faces);
+    qc_status status = sum && x && fine && coarse ? sort_by_source(ctx, mesh, &s) : QC_ERR_NOMEM;
+    if (status == QC_OK) status = frames(ctx, refined, fine);
+    if (status == QC_OK) status = frames(ctx, mesh, coarse);
+    if (status == QC_OK) {
+        for (int32_t t = 0; t < refined->n_faces; t++)
+            add_cross(mesh, &s, field, t, fine, coarse, sum);
+        for (int32_t t = 0; t < mesh->n_faces; t++) {
+            const double angle = atan2(cimag(sum[t]), creal(sum[t])) / 4;
+            x[t] = (qc_complex){cos(angle), sin(angle)};
+        }
+        status = qc_face_field_create(ctx, mesh, x, NULL, NULL, out);
+    }
+    qc__free(s.first);
+    qc__free(s.next);
+    qc__free(sum);
+    qc__free(x);
+    qc__free(fine);
+    qc__free(coarse);
+    return status;
 }

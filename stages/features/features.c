@@ -6,6 +6,7 @@
 
 typedef struct params {
     double angle;
+    bool hard;
 } params;
 
 static qc_status features(const qc_run *run, const void *p) {
@@ -13,7 +14,9 @@ static qc_status features(const qc_run *run, const void *p) {
     qc_features *out = NULL;
     qc_status status = qc_features_detect(run->ctx, run->input(run, "mesh"),
                                           given->angle * PI / 180, 0, NULL, &out);
-    return status ? status : run->output(run, "features", out);
+    if (status) return status;
+    out->hard = given->hard;
+    return run->output(run, "features", out);
 }
 
 static const qc_port inputs[] = {{"mesh", QC_TYPE_MESH, 0, "triangle mesh"}};
@@ -23,6 +26,8 @@ static const qc_port outputs[] = {
 static const qc_param table[] = {
     QC_PARAM_REAL(params, angle, 35, 0, 180, "deg",
                   "edges whose faces' normals differ by more are creases; 180 = boundaries only"),
+    QC_PARAM_BOOL(params, hard, false,
+                  "isolines have to follow the features; off: they guide the field only"),
 };
 
 const qc_stage qc_stage_features = {
@@ -40,7 +45,7 @@ const qc_stage qc_stage_features = {
     1,
     1,
     table,
-    1,
+    2,
     sizeof(params),
     features,
 };

@@ -34,9 +34,10 @@ static qc_status compute(const qc_run *run, const params *given, work *w) {
     double radius = disk_radius(mesh, run->input(run, "sizing"), given->radius);
     qc_status status = qc_field_curvature(ctx, mesh, given->estimator, radius, w->x, w->kappa);
     if (!status) status = qc_field_stability(ctx, mesh, w->x, w->kappa, w->weight);
-    if (!status && given->feature_weight > 0)
-        status = qc_field_align(ctx, mesh, features ? features->edge : NULL, given->feature_weight,
-                                w->x, w->weight, w->trusted);
+    const double strength = features && features->hard ? INFINITY : given->feature_weight;
+    if (!status && strength > 0)
+        status = qc_field_align(ctx, mesh, features ? features->edge : NULL, strength, w->x,
+                                w->weight, w->trusted);
     if (!status && given->extend)
         status = qc_field_extend(ctx, mesh, w->weight, given->trusted, w->x, w->trusted);
     for (int32_t t = 0; !given->extend && t < mesh->n_faces; t++) w->trusted[t] = 1;
@@ -54,11 +55,15 @@ static qc_status curvature(const qc_run *run, const void *p) {
     qc_face_field *out = NULL;
     qc_status status = w.x && w.kappa && w.weight && w.trusted ? compute(run, p, &w) : QC_ERR_NOMEM;
     if (!status) status = qc_face_field_create(run->ctx, mesh, w.x, w.weight, w.trusted, &out);
+    if (!status && features && features->hard)
+        status = qc_face_field_set_aligned(run->ctx, out, features->edge);
     qc__free(w.x);
     qc__free(w.kappa);
     qc__free(w.weight);
     qc__free(w.trusted);
-    return status ? status : run->output(run, "field", out);
+    if (!status) return run->output(run, "field", out);
+    qc_object_release(out);
+    return status;
 }
 
 static const qc_port inputs[] = {
@@ -81,8 +86,10 @@ static const qc_param table[] = {
                   "radius of that disk in edge lengths of the quads; never below two mean edges"),
     QC_PARAM_REAL(params, trusted, 0.3, 0, 1, "",
                   "part of each component's area whose directions are kept, most stable first"),
-    QC_PARAM_REAL(params, feature_weight, 2, 0, 1e6, "",
-                  "weight of faces on feature edges, which follow their edge; 0 = ignore features"),
+    QC_PARAM_REAL(
+        params, feature_weight, 2, 0, 1e6, "",
+        "weight of faces on feature edges, which follow their edge; 0 = ignore features; hard "
+        "features are followed exactly"),
     QC_PARAM_BOOL(params, extend, true,
                   "transport the trusted directions to the other faces; off: trust every face"),
 };

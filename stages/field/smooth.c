@@ -26,10 +26,11 @@ static qc_status smooth_field(qc_ctx *ctx, const qc_face_field *field, const qc_
         status = qc_field_smoothest(ctx, mesh, field->weight, field->trusted, t,
                                     given->detail * quad, x);
     if (!status)
-        status = qc_field_smooth(ctx, mesh, field->x, field->weight, field->trusted, lambda,
-                                 (int32_t)given->rounds, x);
+        status = qc_field_smooth(ctx, mesh, field->x, field->weight, field->trusted, field->aligned,
+                                 lambda, (int32_t)given->rounds, x);
     if (!status && given->separate > 0)
-        status = qc_field_separate(ctx, mesh, given->separate * quad, trusted, x, NULL);
+        status =
+            qc_field_separate(ctx, mesh, given->separate * quad, field->aligned, trusted, x, NULL);
     return status;
 }
 
@@ -44,9 +45,13 @@ static qc_status smooth(const qc_run *run, const void *p) {
     if (!status && trusted) memcpy(trusted, field->trusted, F);
     if (!status) status = smooth_field(run->ctx, field, run->input(run, "sizing"), p, trusted, x);
     if (!status) status = qc_face_field_create(run->ctx, mesh, x, field->weight, trusted, &out);
+    if (!status && field->aligned)
+        status = qc_face_field_set_aligned(run->ctx, out, field->aligned);
     qc__free(x);
     qc__free(trusted);
-    return status ? status : run->output(run, "field", out);
+    if (!status) return run->output(run, "field", out);
+    qc_object_release(out);
+    return status;
 }
 
 static const qc_port inputs[] = {

@@ -28,8 +28,12 @@ static qc_status smoothest(const qc_run *run, const void *p) {
                                           guide ? given->alignment : 0, given->detail * quad, x);
     qc_face_field *out = NULL;
     if (!status) status = qc_face_field_create(run->ctx, mesh, x, weight, trusted, &out);
+    if (!status && guide && guide->aligned)
+        status = qc_face_field_set_aligned(run->ctx, out, guide->aligned);
     qc__free(x);
-    return status ? status : run->output(run, "field", out);
+    if (!status) return run->output(run, "field", out);
+    qc_object_release(out);
+    return status;
 }
 
 static const qc_port inputs[] = {
@@ -43,7 +47,8 @@ static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothes
 static const qc_param table[] = {
     QC_PARAM_REAL(
         params, alignment, 1, 0, 1e6, "",
-        "pull of the guide's trusted faces against smoothness; 0, or no guide, ignores it"),
+        "pull of the guide's trusted faces against smoothness; 0, or no guide, ignores it; hard "
+        "features of the guide are kept exactly"),
     QC_PARAM_REAL(
         params, detail, 0.5, 0, 100, "quad",
         "pairs of singularities nearer than about this many edge lengths of the quads are "

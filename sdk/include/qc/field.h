@@ -31,7 +31,8 @@ typedef struct qc_face_field {
     qc_object object;
     const qc_mesh *mesh;
     const qc_complex *x;    /* n_faces, |x| = 1    */
-    const double *weight;   /* optional, n_faces: stability weights (5.2), dimensionless, >= 0   */
+    const double *weight;   /* optional, n_faces: stability weights (5.2), dimensionless, >= 0;
+                               infinite = the direction is kept exactly (in trusted faces)   */
     const uint8_t *trusted; /* optional, n_faces: 1 where the direction is to be kept */
     const uint8_t *aligned; /* optional, n_edges: 1 on hard features, which isolines have to follow;
                                a direction of the cross runs along such an edge on either side */
@@ -58,9 +59,11 @@ QC_API qc_status qc_field_curvature(qc_ctx *ctx, const qc_mesh *mesh, int32_t es
 QC_API qc_status qc_field_stability(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *x,
                                     const double *kappa, double *weight);
 /* Turns the cross of each face with a feature edge along that edge, trusts it and raises its weight
- * to `strength` (soft alignment to creases and boundaries). edge: n_edges flags as in qc_features,
+ * to `strength`: soft alignment to creases and boundaries; INFINITY = hard alignment, which
+ * smoothing, separation and optimisation keep exactly. edge: n_edges flags as in qc_features,
  * nonzero = feature; NULL = the boundary. x, weight, trusted (n_faces each) are changed in place at
- * these faces. */
+ * these faces. A face with several feature edges follows one of them or their mean: split the mesh
+ * first (qc_features_split). */
 QC_API qc_status qc_field_align(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                 double strength, qc_complex *x, double *weight, uint8_t *trusted);
 /* Keeps the most stable faces of each component which make up `fraction` of its area, and those
@@ -74,15 +77,20 @@ QC_API qc_status qc_field_extend(qc_ctx *ctx, const qc_mesh *mesh, const double 
  * the matching of x, then re-matches; `rounds` times or until the matching no longer changes. E_A
  * pulls the trusted faces towards guide (NULL = the x given) with w_t A_t / l^2 (l as in
  * qc_field_stability). weight NULL = 1; trusted NULL = all faces; both NULL: lambda acts as 1. x in
- * place. The result is a local minimum: start from qc_field_smoothest with alignment (1 - lambda) /
- * lambda for few singularities. Errors: ARGUMENT, NOMEM, CANCELLED. */
+ * place. Faces of infinite weight are no unknowns and stay to the last bit. aligned (n_edges
+ * flags, may be NULL): hard features, beside which faces have infinite weight; the matching then is
+ * that of qc_matching_create with open sectors. The result is a local
+ * minimum: start from qc_field_smoothest with alignment (1 - lambda) / lambda for few
+ * singularities. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *guide,
-                                 const double *weight, const uint8_t *trusted, double lambda,
-                                 int32_t rounds, qc_complex *x);
+                                 const double *weight, const uint8_t *trusted,
+                                 const uint8_t *aligned, double lambda, int32_t rounds,
+                                 qc_complex *x);
 /* Smoothest field: in each component the eigenvector of the smallest eigenvalue of the connection
  * Laplacian on fourth powers x^4, by inverse iteration on its factor. With alignment > 0 and weight
  * or trusted given: minimiser of E_S(x^4) + alignment sum w_t A_t / l^2 |x^4 - guide^4|^2 over the
  * trusted faces (in: guide, out: field); components without any trusted face get the eigenvector.
+ * Faces of infinite weight stay to the last bit, whatever alignment is.
  * detail > 0, a length in the units of the mesh: then gradient flow with |x| = 1 kept, which closes
  * pairs of singularities nearer than about that; 0 = off. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
@@ -93,9 +101,12 @@ QC_API qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const doub
  * opposite singularities nearer than `distance` (units of the mesh; 0 = none) or, within twice
  * that, on one edge. Region by region a result is kept when it is less crowded; its faces lose
  * their flag in trusted (n_faces, in and out, may be NULL). Vertices whose index stays are named by
- * a warning; *left (may be NULL) counts them. x in place. Errors: ARGUMENT, NOMEM, CANCELLED. */
+ * a warning; *left (may be NULL) counts them. Faces beside hard features (aligned: n_edges flags,
+ * may be NULL) stay, and the vertices on these do not count. x in place. Errors: ARGUMENT, NOMEM,
+ * CANCELLED. */
 QC_API qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
-                                   uint8_t *trusted, qc_complex *x, int32_t *left);
+                                   const uint8_t *aligned, uint8_t *trusted, qc_complex *x,
+                                   int32_t *left);
 
 /* Matching and indices of a cross field (docs/conventions.md). */
 typedef struct qc_matching {
@@ -109,16 +120,31 @@ typedef struct qc_matching {
     int32_t n_singular;    /* interior vertices with index4 != 0                                */
     int32_t index4_sum;    /* = 4 chi on a closed mesh (checked)                               */
 } qc_matching;
-/* m NULL: the straightest matching; otherwise the given one (n_edges; any turns). FAILED when the
- * indices of a closed mesh do not sum to 4 chi (cannot happen for finite fields). */
+/* m NULL: the straightest matching; otherwise the given one (n_edges; any turns). Where the field
+ * has hard features, each sector between two of them at a vertex gets at least one quarter turn,
+ * and a number within one of its angle, if need be by turns at edges inside the sector beyond pi/4
+ * (m NULL only); FAILED with where = vertex when it has no such edge. FAILED when the indices of a
+ * closed mesh do not sum to 4 chi (cannot happen for finite fields). */
 QC_API qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
                                     qc_matching **out);
 
-/* Bisects every edge between two cones (vertices of index4 != 0), and the link of interior vertices
- * whose triangles are too few for their angle (valence <= (4 - index4) / 2): a piecewise linear map
- * with the cones on lattice points would have to fold there. Faces stay in their plane with their
- * cross, weight, flag and length; old vertices keep their numbers and indices, midpoints have index
- * 0. source_face and source_vertex as of the old mesh (its own numbers when it has none), -1 at
+/* Makes room for hard features: bisects every other edge both of whose ends are on features, and
+ * all edges of faces with three feature edges, until there is none. Then no face has two feature
+ * edges, and each side of a feature has a row of faces which are free to turn. Halves of features
+ * are features; source_face and source_vertex as in qc_matching_split. Features which are not hard,
+ * or nothing to split: the same objects, retained. sizing, sizing_out may both be NULL. Errors:
+ * ARGUMENT (sizing of another mesh), NOMEM, CANCELLED. */
+QC_API qc_status qc_features_split(qc_ctx *ctx, const qc_features *features,
+                                   const qc_sizing *sizing, qc_mesh **mesh,
+                                   qc_features **features_out, qc_sizing **sizing_out);
+
+/* Bisects every edge between two cones (vertices of index4 != 0) which is no hard feature, or
+ * between a cone and a hard feature, and the link of interior vertices whose triangles are too few
+ * for their angle (valence <= (4 - index4) / 2); of vertices on hard features that of the sectors
+ * which have too few for theirs: a piecewise linear map with the cones on lattice points and the
+ * features on isolines would have to fold there. Faces stay in their plane with their cross,
+ * weight, flag and length; old vertices keep their numbers and indices, midpoints have index 0.
+ * source_face and source_vertex as of the old mesh (its own numbers when it has none), -1 at
  * midpoints. Nothing to split: the same objects, retained. Errors: ARGUMENT (sizing of another
  * mesh), NOMEM, CANCELLED. */
 QC_API qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching,

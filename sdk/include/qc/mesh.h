@@ -185,7 +185,12 @@ QC_API qc_status qc_mesh_cut_graph(qc_ctx *ctx, const qc_mesh *mesh, const doubl
 
 /* --- features --------------------------------------------------------------------------------- */
 
-enum { QC_FEATURE_BOUNDARY = 1, QC_FEATURE_CREASE = 2, QC_FEATURE_LINE = 4 };
+enum {
+    QC_FEATURE_BOUNDARY = 1,
+    QC_FEATURE_CREASE = 2,
+    QC_FEATURE_LINE = 4, /* strokes, and lines of the input */
+    QC_FEATURE_GROUP = 8 /* between two groups of faces */
+};
 typedef struct qc_features {
     qc_object object;
     const qc_mesh *mesh; /* retained                                                              */
@@ -193,7 +198,11 @@ typedef struct qc_features {
         n_corners;         /* corners: feature vertices of feature degree != 2 */
     const uint8_t *edge;   /* n_edges: QC_FEATURE_... flags   */
     const uint8_t *vertex; /* n_vertices: number of feature edges at it, saturated at 255 */
+    bool hard;             /* isolines have to follow them; false: they guide the field only */
 } qc_features;
+/* Features from their flags (n_edges, copied). */
+QC_API qc_status qc_features_create(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
+                                    bool hard, qc_features **out);
 /* Crease: dihedral angle above `angle` (radians). line: pairs of mesh vertices (may be NULL) whose
  * edges are features; pairs which are no edge are ignored and counted in the log. */
 QC_API qc_status qc_features_detect(qc_ctx *ctx, const qc_mesh *mesh, double angle, int32_t n_lines,

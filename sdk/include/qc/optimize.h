@@ -41,7 +41,8 @@ typedef struct qc_distortion_state {
 } qc_distortion_state;
 QC_API void qc_distortion_get_state(const qc_distortion *distortion, qc_distortion_state *state);
 
-/* Whether the edge can be flipped: interior, of a component without trivial holonomy. */
+/* Whether the edge can be flipped: interior, no end on a hard feature (whose sectors keep their
+ * quarter turns), of a component without trivial holonomy. */
 QC_API bool qc_distortion_can_flip(const qc_distortion *distortion, int32_t edge);
 
 /* E_D after each of n flips made alone, exactly (to rounding); infinity where L* would become

@@ -16,6 +16,7 @@ extern "C" {
 QC_API extern const qc_stage qc_stage_repair;           /* qc.repair          */
 QC_API extern const qc_stage qc_stage_features;         /* qc.features        */
 QC_API extern const qc_stage qc_stage_size;             /* qc.size            */
+QC_API extern const qc_stage qc_stage_split_features;   /* qc.split.features  */
 QC_API extern const qc_stage qc_stage_field_curvature;  /* qc.field.curvature */
 QC_API extern const qc_stage qc_stage_field_smooth;     /* qc.field.smooth    */
 QC_API extern const qc_stage qc_stage_field_smoothest;  /* qc.field.smoothest */

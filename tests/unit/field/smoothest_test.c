@@ -193,13 +193,13 @@ static void crowded_indices_are_shared(void **state) {
     qc_matching *before = match(ctx, mesh, x);
     assert_int_equal(before->index4[0], 4);
     int32_t left = -1;
-    assert_int_equal(qc_field_separate(ctx, mesh, 0.1, trusted, x, &left), QC_OK);
+    assert_int_equal(qc_field_separate(ctx, mesh, 0.1, NULL, trusted, x, &left), QC_OK);
     assert_int_equal(left, 0);
     qc_matching *after = match(ctx, mesh, x);
     assert_int_equal(after->index4[0], 0);
     assert_int_equal(trusted[0], 0);
     for (int32_t v = 0; v < mesh->n_vertices; v++) assert_in_range(after->index4[v] + 1, 0, 2);
-    assert_int_equal(qc_field_separate(ctx, mesh, -1, NULL, x, NULL), QC_ERR_ARGUMENT);
+    assert_int_equal(qc_field_separate(ctx, mesh, -1, NULL, NULL, x, NULL), QC_ERR_ARGUMENT);
     qc_object_release(before);
     qc_object_release(after);
     qc_object_release(mesh);
