@@ -16,7 +16,7 @@ static qc_status publish(const qc_run *run, const qc_mesh *old, qc_mesh *mesh,
         status = run->output(run, "features", features);
     else
         qc_object_release(features);
-    if (!status) return run->output(run, "sizing", sizing);
+    if (!status && sizing) return run->output(run, "sizing", sizing);
     qc_object_release(sizing);
     return status;
 }
@@ -34,12 +34,12 @@ static qc_status split(const qc_run *run, const void *params) {
 
 static const qc_port inputs[] = {
     {"features", QC_TYPE_FEATURES, 0, "feature edges; nothing is done where they are not hard"},
-    {"sizing", QC_TYPE_SIZING, 0, "target edge length of the quads"},
+    {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL, "target edge length of the quads"},
 };
 static const qc_port outputs[] = {
     {"mesh", QC_TYPE_MESH, 0, "the same surface with some edges bisected"},
     {"features", QC_TYPE_FEATURES, 0, "the same features on that mesh"},
-    {"sizing", QC_TYPE_SIZING, 0, "the sizing on that mesh"},
+    {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL, "the sizing on that mesh, when one is given"},
 };
 
 const qc_stage qc_stage_split_features = {
