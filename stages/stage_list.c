@@ -1,5 +1,6 @@
 /* The built-in stages and interfaces as arrays; sdk/pipeline reads them through these symbols. */
 #include "sdk/pipeline/builtin.h"
+#include <qc/closest_point.h>
 #include <qc/solver.h>
 #include <qc/stages.h>
 
@@ -9,4 +10,6 @@ const qc_stage *const qc__builtin_stages[] = {
     NULL};
 #undef QC_STAGE
 
-const qc__offer qc__builtin_interfaces[] = {{QC_SOLVER_ID, &qc_solver_builtin.head}, {NULL, NULL}};
+const qc__offer qc__builtin_interfaces[] = {{QC_SOLVER_ID, &qc_solver_builtin.head},
+                                            {QC_CLOSEST_POINT_ID, &qc_closest_point_builtin.head},
+                                            {NULL, NULL}};

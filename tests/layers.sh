@@ -7,14 +7,15 @@ BEGIN {
     may["base"] = "base"; may["sparse"] = "base sparse"; may["mesh"] = "base mesh"
     may["shape"] = "base sparse mesh shape"; may["cover"] = "base sparse mesh cover"
     may["dec"] = may["cover"] " dec"; may["field"] = may["dec"] " field"; may["optimize"] = may["field"] " optimize"
-    may["map"] = may["optimize"] " map"
-    may["pipeline"] = "base pipeline"; may["remesh"] = may["map"] " shape pipeline remesh"
+    may["map"] = may["optimize"] " map"; may["finish"] = "base mesh finish"
+    may["pipeline"] = "base pipeline"; may["remesh"] = may["map"] " finish shape pipeline remesh"
     may["qc"] = may["remesh"] " qc"   # the umbrella header
 }
 # The layer a public header or a folder of sdk/ belongs to.
 function layer(path) {
     sub(/.*\//, "", path); sub(/\.h$/, "", path)
     if (path == "solver") return "sparse"
+    if (path == "closest_point") return "mesh"
     return path == "stage" || path == "stages" || path == "plugin" ? "pipeline" : path
 }
 function offence(why) { print $1 ":" $2 ": " $3 " - " why; bad = 1 }

@@ -63,6 +63,12 @@ static inline void qc__halfedge_vector(const qc_mesh *m, int32_t h, double out[3
     for (int i = 0; i < 3; i++) out[i] = q[i] - p[i];
 }
 
+/* --- polygon quality (polygon_quality.c) */
+
+/* Smallest sine of a corner angle against the normal of the polygon with the given n vertices: 1
+ * for a rectangle, <= 0 where a corner is reflex; 0 for one without area. */
+double qc__scaled_jacobian(const double *position, const int32_t *vertex, int32_t n);
+
 /* --- polygon topology (polygon_topology.c, polygon_defects.c) */
 
 /* The sides of the faces (side i runs from corner i to the next one of its face), grouped by edge:

@@ -18,7 +18,8 @@ static const step optimisation[] = {{"cancel", "qc.optimize.cancel"},
                                     {"balance", "qc.optimize.balance"}};
 static const step after_matching[] = {{"split", "qc.split"},     {"hodge", "qc.hodge"},
                                       {"round", "qc.round"},     {"untangle", "qc.untangle"},
-                                      {"extract", "qc.extract"}, {"measure", "qc.measure"}};
+                                      {"extract", "qc.extract"}, {"finish", "qc.finish"},
+                                      {"measure", "qc.measure"}};
 
 #define APPEND(pipeline, steps) append(pipeline, steps, sizeof(steps) / sizeof *(steps))
 

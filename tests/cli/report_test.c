@@ -1,4 +1,4 @@
-/* qc_report_measure against figures known in closed form, and the box tree against brute force. */
+/* qc_report_measure against figures known in closed form. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,8 +9,6 @@
 #include <qc/qc.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "sdk/map/report/closest_point.h"
 
 static int setup(void **state) {
     return qc_ctx_create(NULL, (qc_ctx **)state) == QC_OK ? 0 : -1;
@@ -153,64 +151,11 @@ static void reports_add_up(void **state) {
     qc_object_release(mesh);
 }
 
-static double unit(uint32_t *seed) {
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / (1 << 24);
-}
-
-/* Distance to one triangle by a fine search over barycentric coordinates: an upper bound which is
- * close. */
-static double searched_distance(const double *x, const int32_t *v, const double *p) {
-    enum { STEPS = 60 };
-    double best = INFINITY;
-    for (int i = 0; i <= STEPS; i++)
-        for (int j = 0; i + j <= STEPS; j++) {
-            const double s = (double)i / STEPS, t = (double)j / STEPS;
-            double sum = 0;
-            for (int k = 0; k < 3; k++) {
-                const double d = (1 - s - t) * x[3 * v[0] + k] + s * x[3 * v[1] + k] +
-                                 t * x[3 * v[2] + k] - p[k];
-                sum += d * d;
-            }
-            best = fmin(best, sqrt(sum));
-        }
-    return best;
-}
-
-static void the_tree_finds_the_closest_triangle(void **state) {
-    enum { TRIANGLES = 60, POINTS = 40 };
-    qc_ctx *ctx = *state;
-    double x[9 * TRIANGLES], p[3 * POINTS], distance[POINTS];
-    int32_t vertex[3 * TRIANGLES];
-    uint32_t seed = 5;
-    for (int t = 0; t < TRIANGLES; t++)
-        for (int i = 0; i < 9; i++)
-            x[9 * t + i] = (i < 3 ? unit(&seed) : x[9 * t + i % 3] + 0.2 * unit(&seed));
-    memcpy(x + 9, x, 3 * sizeof *x); /* a needle and a point */
-    memcpy(x + 12, x + 9, 3 * sizeof *x);
-    memcpy(x + 24, x + 18, 3 * sizeof *x);
-    memcpy(x + 21, x + 18, 3 * sizeof *x);
-    for (int32_t i = 0; i < 3 * TRIANGLES; i++) vertex[i] = i;
-    for (int i = 0; i < 3 * POINTS; i++) p[i] = 2 * unit(&seed) - 0.5;
-    qc__triangle_tree *tree = NULL;
-    assert_int_equal(qc__triangle_tree_create(ctx, TRIANGLES, x, vertex, &tree), QC_OK);
-    assert_int_equal(qc__triangle_tree_distances(ctx, tree, POINTS, p, distance), QC_OK);
-    for (int i = 0; i < POINTS; i++) {
-        double best = INFINITY;
-        for (int t = 0; t < TRIANGLES; t++)
-            best = fmin(best, searched_distance(x, vertex + 3 * t, p + 3 * i));
-        assert_true(distance[i] <= best + 1e-12);
-        assert_true(distance[i] > best - 0.01);
-    }
-    qc__triangle_tree_free(tree);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_grid_is_perfect),
         cmocka_unit_test(distortion_is_that_of_the_singular_values),
         cmocka_unit_test(reports_add_up),
-        cmocka_unit_test(the_tree_finds_the_closest_triangle),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -3,9 +3,11 @@
 #define QC_QC_H
 
 #include <qc/base.h>
+#include <qc/closest_point.h>
 #include <qc/cover.h>
 #include <qc/dec.h>
 #include <qc/field.h>
+#include <qc/finish.h>
 #include <qc/map.h>
 #include <qc/mesh.h>
 #include <qc/optimize.h>

@@ -30,6 +30,7 @@ QC_API extern const qc_stage qc_stage_hodge;            /* qc.hodge           */
 QC_API extern const qc_stage qc_stage_round;            /* qc.round           */
 QC_API extern const qc_stage qc_stage_untangle;         /* qc.untangle        */
 QC_API extern const qc_stage qc_stage_extract;          /* qc.extract         */
+QC_API extern const qc_stage qc_stage_finish;           /* qc.finish          */
 QC_API extern const qc_stage qc_stage_measure;          /* qc.measure         */
 
 #ifdef __cplusplus

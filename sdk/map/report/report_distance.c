@@ -1,8 +1,38 @@
 /* Two-sided distance between a quad mesh and the surface it was made from: sampled at the vertices,
  * edge midpoints and face centres of the quads, and at the vertices of the mesh. */
-#include "sdk/map/report/closest_point.h"
-#include "sdk/map/report/report.h"
 #include <math.h>
+#include <qc/closest_point.h>
+
+#include "sdk/map/report/report.h"
+
+enum { CHUNK = 256, BATCH = 1 << 16 };
+
+typedef struct query {
+    const qc_closest_tree *tree;
+    const double *point;
+    double *distance;
+} query;
+
+static void run_queries(void *arg, int64_t begin, int64_t end, uint32_t worker) {
+    const query *q = arg;
+    int32_t nearest = 0;
+    double weight[3];
+    (void)worker;
+    for (int64_t i = begin; i < end; i++)
+        q->distance[i] =
+            qc_closest_point_builtin.query(q->tree, q->point + 3 * i, &nearest, weight);
+}
+
+/* distance[i] of point i to the nearest triangle. */
+static qc_status distances(qc_ctx *ctx, const qc_closest_tree *tree, int64_t n, const double *point,
+                           double *distance) {
+    for (int64_t at = 0; at < n; at += BATCH) {
+        if (!qc__progress(ctx, (double)at / (double)n)) return QC_ERR_CANCELLED;
+        query q = {tree, point + 3 * at, distance + at};
+        qc__parallel_for(ctx, n - at < BATCH ? n - at : BATCH, CHUNK, run_queries, &q);
+    }
+    return QC_OK;
+}
 
 /* Polygons as fans of triangles; 3 (n_corners - 2 n_faces) indices. */
 static void fan(const qc_polygon_mesh *quads, int32_t *vertex) {
@@ -41,12 +71,13 @@ static void sample(const qc_polygon_mesh *quads, double *point) {
 /* Adds the distances of n points to a triangle list. */
 static qc_status add(qc_ctx *ctx, int32_t n_triangles, const double *position,
                      const int32_t *vertex, int64_t n, const double *point, qc_report *report) {
-    qc__triangle_tree *tree = NULL;
+    const qc_closest_point *closest = &qc_closest_point_builtin;
+    qc_closest_tree *tree = NULL;
     double *distance = QC__NEW(ctx, double, n);
     qc_status status = distance ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK)
-        status = qc__triangle_tree_create(ctx, n_triangles, position, vertex, &tree);
-    if (status == QC_OK) status = qc__triangle_tree_distances(ctx, tree, n, point, distance);
+        status = closest->build(closest, ctx, n_triangles, position, vertex, &tree);
+    if (status == QC_OK) status = distances(ctx, tree, n, point, distance);
     if (status == QC_OK) {
         for (int64_t i = 0; i < n; i++) {
             report->quads.hausdorff = fmax(report->quads.hausdorff, distance[i]);
@@ -54,7 +85,7 @@ static qc_status add(qc_ctx *ctx, int32_t n_triangles, const double *position,
         }
         report->quads.distance_samples += (double)n;
     }
-    qc__triangle_tree_free(tree);
+    closest->destroy(tree);
     qc__free(distance);
     return status;
 }

@@ -1,7 +1,9 @@
 /* Regularity of a quad mesh as in Table 7.1 of the thesis: sums of edge lengths and corner angles,
  * and the smallest scaled Jacobian (sine of the corner angle against the face normal). */
-#include "sdk/map/report/report.h"
 #include <math.h>
+
+#include "sdk/map/report/report.h"
+#include "sdk/mesh/internal.h"
 
 static void difference(const qc_polygon_mesh *m, int32_t from, int32_t to, double d[3]) {
     for (int k = 0; k < 3; k++)
@@ -20,18 +22,6 @@ static double dot(const double a[3], const double b[3]) {
 
 static double length(const double a[3]) {
     return sqrt(dot(a, a));
-}
-
-/* Twice the area vector of a polygon. */
-static void area_vector(const qc_polygon_mesh *m, const int32_t *v, int32_t n, double normal[3]) {
-    normal[0] = normal[1] = normal[2] = 0;
-    for (int32_t i = 1; i + 1 < n; i++) {
-        double a[3], b[3], c[3];
-        difference(m, v[0], v[i], a);
-        difference(m, v[0], v[i + 1], b);
-        cross(a, b, c);
-        for (int k = 0; k < 3; k++) normal[k] += c[k];
-    }
 }
 
 /* Every undirected edge once: the corners are bucketed by the lower end of the edge they start, and
@@ -90,9 +80,6 @@ static qc_status add_edges(qc_ctx *ctx, const qc_polygon_mesh *m, qc_report *rep
 static void add_corners(const qc_polygon_mesh *m, int32_t f, qc_report *report) {
     const int32_t n = m->face_offset[f + 1] - m->face_offset[f];
     const int32_t *v = m->face_vertex + m->face_offset[f];
-    double normal[3];
-    area_vector(m, v, n, normal);
-    const double area = length(normal);
     for (int32_t i = 0; i < n; i++) {
         double to_next[3], to_previous[3], c[3];
         difference(m, v[i], v[(i + 1) % n], to_next);
@@ -102,11 +89,9 @@ static void add_corners(const qc_polygon_mesh *m, int32_t f, qc_report *report) 
         report->quads.corners += 1;
         report->quads.angle_sum += angle;
         report->quads.angle_sum2 += angle * angle;
-        const double scale = length(to_next) * length(to_previous) * area;
-        const double jacobian = scale > 0 ? dot(c, normal) / scale : 0.0;
-        if (jacobian < report->quads.min_scaled_jacobian)
-            report->quads.min_scaled_jacobian = jacobian;
     }
+    report->quads.min_scaled_jacobian =
+        fmin(report->quads.min_scaled_jacobian, qc__scaled_jacobian(m->position, v, n));
 }
 
 qc_status qc__report_quads(qc_ctx *ctx, const qc_polygon_mesh *quads, qc_report *report) {

@@ -1,12 +1,14 @@
 /* Closest points on a triangle list: a binary tree of bounding boxes over the centroids, split at
  * the median of the longest axis; queries go to the nearer child first. The point-triangle distance
  * follows the Voronoi regions of a triangle (Ericson, Real-Time Collision Detection, 5.1.5). */
-#include "sdk/map/report/closest_point.h"
 #include <float.h>
 #include <math.h>
+#include <qc/closest_point.h>
 #include <string.h>
 
-enum { LEAF = 4, DEPTH = 64, CHUNK = 256, BATCH = 1 << 16 };
+#include "sdk/base/internal.h"
+
+enum { LEAF = 4, DEPTH = 64 };
 
 typedef struct node {
     double lo[3], hi[3];
@@ -14,16 +16,18 @@ typedef struct node {
                              first and first + 1 */
 } node;
 
-struct qc__triangle_tree {
+struct qc_closest_tree {
     int32_t n_nodes;
     node *node;
-    double *corner; /* 9 per triangle, in leaf order */
+    double *corner; /* 9 per triangle, in leaf order           */
+    int32_t *order; /* number of the triangle at each place    */
+    int32_t *place; /* inverse of order                        */
 };
 
 typedef struct builder {
     const double *centroid; /* 3 n */
     int32_t *order;
-    qc__triangle_tree *tree;
+    qc_closest_tree *tree;
 } builder;
 
 /* Moves the `middle - begin` smallest along `axis` to the front of order[begin, end). */
@@ -89,7 +93,7 @@ static void copy_corners(const builder *b, int32_t n, const double *position,
 }
 
 /* Children have higher numbers than their parent, so one backward sweep fits all boxes. */
-static void fit_boxes(qc__triangle_tree *tree) {
+static void fit_boxes(qc_closest_tree *tree) {
     for (int32_t at = tree->n_nodes - 1; at >= 0; at--) {
         node *self = &tree->node[at];
         for (int k = 0; k < 3; k++) {
@@ -109,63 +113,81 @@ static void fit_boxes(qc__triangle_tree *tree) {
     }
 }
 
-qc_status qc__triangle_tree_create(qc_ctx *ctx, int32_t n, const double *position,
-                                   const int32_t *vertex, qc__triangle_tree **out) {
-    qc__triangle_tree *tree = QC__ZERO(ctx, qc__triangle_tree, 1);
+static void destroy(qc_closest_tree *tree) {
+    if (!tree) return;
+    qc__free(tree->node);
+    qc__free(tree->corner);
+    qc__free(tree->order);
+    qc__free(tree->place);
+    qc__free(tree);
+}
+
+static qc_closest_tree *allocate(qc_ctx *ctx, int64_t n) {
+    qc_closest_tree *tree = QC__ZERO(ctx, qc_closest_tree, 1);
+    if (!tree) return NULL;
+    tree->node = QC__NEW(ctx, node, 2 * n);
+    tree->corner = QC__NEW(ctx, double, 9 * n);
+    tree->order = QC__NEW(ctx, int32_t, n);
+    tree->place = QC__NEW(ctx, int32_t, n);
+    if (tree->node && tree->corner && tree->order && tree->place) return tree;
+    destroy(tree);
+    return NULL;
+}
+
+static qc_status build(const qc_closest_point *self, qc_ctx *ctx, int32_t n, const double *position,
+                       const int32_t *vertex, qc_closest_tree **out) {
+    (void)self;
+    qc_closest_tree *tree = allocate(ctx, n);
     double *centroid = QC__NEW(ctx, double, 3 * (int64_t)n);
-    int32_t *order = QC__NEW(ctx, int32_t, n);
-    qc_status status = QC_ERR_NOMEM;
-    if (!tree || !centroid || !order) goto done;
-    tree->node = QC__NEW(ctx, node, 2 * (int64_t)n);
-    tree->corner = QC__NEW(ctx, double, 9 * (int64_t)n);
-    if (!tree->node || !tree->corner) goto done;
+    if (!tree || !centroid) {
+        destroy(tree);
+        qc__free(centroid);
+        return QC_ERR_NOMEM;
+    }
     for (int32_t i = 0; i < n; i++) {
         const int32_t *v = vertex + 3 * (int64_t)i;
-        order[i] = i;
+        tree->order[i] = i;
         for (int k = 0; k < 3; k++)
             centroid[3 * (int64_t)i + k] =
                 (position[3 * (int64_t)v[0] + k] + position[3 * (int64_t)v[1] + k] +
                  position[3 * (int64_t)v[2] + k]) /
                 3;
     }
-    builder b = {centroid, order, tree};
+    builder b = {centroid, tree->order, tree};
     tree->n_nodes = 1;
     split(&b, 0, 0, n);
+    for (int32_t i = 0; i < n; i++) tree->place[tree->order[i]] = i;
     copy_corners(&b, n, position, vertex);
     fit_boxes(tree);
-    *out = tree;
-    tree = NULL;
-    status = QC_OK;
-done:
-    qc__triangle_tree_free(tree);
     qc__free(centroid);
-    qc__free(order);
-    return status;
-}
-
-void qc__triangle_tree_free(qc__triangle_tree *tree) {
-    if (!tree) return;
-    qc__free(tree->node);
-    qc__free(tree->corner);
-    qc__free(tree);
+    *out = tree;
+    return QC_OK;
 }
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* |p - (s a + t b)|^2 for p, a, b relative to the same corner. */
-static double residual2(const double p[3], const double a[3], double s, const double b[3],
-                        double t) {
+/* |p - (s a + t b)|^2 for p, a, b relative to the same corner; weight = (1 - s - t, s, t). */
+static double residual2(const double p[3], const double a[3], double s, const double b[3], double t,
+                        double weight[3]) {
     double sum = 0;
     for (int k = 0; k < 3; k++) {
         const double d = p[k] - s * a[k] - t * b[k];
         sum += d * d;
     }
+    weight[0] = fmax(1 - s - t, 0);
+    weight[1] = s;
+    weight[2] = t;
     return sum;
 }
 
-static double triangle_distance2(const double *x, const double p[3]) {
+static double at_corner(const double d[3], int k, double weight[3]) {
+    for (int i = 0; i < 3; i++) weight[i] = i == k;
+    return dot(d, d);
+}
+
+static double triangle_distance2(const double *x, const double p[3], double weight[3]) {
     double b[3], c[3], ap[3], bp[3], cp[3];
     for (int k = 0; k < 3; k++) {
         b[k] = x[3 + k] - x[k];
@@ -175,21 +197,25 @@ static double triangle_distance2(const double *x, const double p[3]) {
         cp[k] = p[k] - x[6 + k];
     }
     const double d1 = dot(b, ap), d2 = dot(c, ap);
-    if (d1 <= 0 && d2 <= 0) return dot(ap, ap);
+    if (d1 <= 0 && d2 <= 0) return at_corner(ap, 0, weight);
     const double d3 = dot(b, bp), d4 = dot(c, bp);
-    if (d3 >= 0 && d4 <= d3) return dot(bp, bp);
+    if (d3 >= 0 && d4 <= d3) return at_corner(bp, 1, weight);
     const double d5 = dot(b, cp), d6 = dot(c, cp);
-    if (d6 >= 0 && d5 <= d6) return dot(cp, cp);
+    if (d6 >= 0 && d5 <= d6) return at_corner(cp, 2, weight);
     const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return residual2(ap, b, d1 / (d1 - d3), c, 0);
-    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return residual2(ap, b, 0, c, d2 / (d2 - d6));
+    if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3)
+        return residual2(ap, b, d1 / (d1 - d3), c, 0, weight);
+    if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6)
+        return residual2(ap, b, 0, c, d2 / (d2 - d6), weight);
     if (va <= 0 && d4 >= d3 && d5 >= d6 && (d4 - d3) + (d5 - d6) > 0) {
         const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return residual2(ap, b, 1 - w, c, w);
+        return residual2(ap, b, 1 - w, c, w, weight);
     }
     const double sum = va + vb + vc;
-    if (!(sum > 0)) return fmin(dot(ap, ap), fmin(dot(bp, bp), dot(cp, cp)));
-    return residual2(ap, b, vb / sum, c, vc / sum);
+    if (sum > 0) return residual2(ap, b, vb / sum, c, vc / sum, weight);
+    const double a2 = dot(ap, ap), b2 = dot(bp, bp), c2 = dot(cp, cp);
+    if (a2 <= b2 && a2 <= c2) return at_corner(ap, 0, weight);
+    return b2 <= c2 ? at_corner(bp, 1, weight) : at_corner(cp, 2, weight);
 }
 
 static double box_distance2(const node *box, const double p[3]) {
@@ -201,26 +227,34 @@ static double box_distance2(const node *box, const double p[3]) {
     return sum;
 }
 
-/* *nearest: a triangle (leaf order) to start from; on return the closest one. */
-static double closest2(const qc__triangle_tree *tree, const double p[3], int32_t *nearest) {
+/* A triangle at place i which is closer than *best becomes the best one. */
+static void compare(const qc_closest_tree *tree, int32_t i, const double p[3], double *best,
+                    int32_t *nearest, double weight[3]) {
+    double w[3];
+    const double d = triangle_distance2(tree->corner + 9 * (int64_t)i, p, w);
+    if (d >= *best) return;
+    *best = d;
+    *nearest = i;
+    memcpy(weight, w, sizeof w);
+}
+
+static double query(const qc_closest_tree *tree, const double p[3], int32_t *triangle,
+                    double weight[3]) {
     struct {
         int32_t at;
         double distance2;
     } stack[DEPTH];
     int top = 0;
-    double best = triangle_distance2(tree->corner + 9 * (int64_t)*nearest, p);
+    int32_t nearest = tree->place[*triangle];
+    double best = triangle_distance2(tree->corner + 9 * (int64_t)nearest, p, weight);
     stack[top].at = 0;
     stack[top++].distance2 = box_distance2(tree->node, p);
     while (top > 0) {
         const int32_t at = stack[--top].at;
         if (stack[top].distance2 >= best) continue;
         const node *self = &tree->node[at];
-        for (int32_t i = self->first; i < self->first + self->count; i++) {
-            const double d = triangle_distance2(tree->corner + 9 * (int64_t)i, p);
-            if (d >= best) continue;
-            best = d;
-            *nearest = i;
-        }
+        for (int32_t i = self->first; i < self->first + self->count; i++)
+            compare(tree, i, p, &best, &nearest, weight);
         if (self->count > 0) continue;
         const double d0 = box_distance2(&tree->node[self->first], p);
         const double d1 = box_distance2(&tree->node[self->first + 1], p);
@@ -230,29 +264,10 @@ static double closest2(const qc__triangle_tree *tree, const double p[3], int32_t
         stack[top].at = self->first + 1 - far;
         stack[top++].distance2 = far ? d0 : d1;
     }
-    return best;
+    *triangle = tree->order[nearest];
+    return sqrt(best);
 }
 
-typedef struct query {
-    const qc__triangle_tree *tree;
-    const double *point;
-    double *distance;
-} query;
-
-static void run_queries(void *arg, int64_t begin, int64_t end, uint32_t worker) {
-    const query *q = arg;
-    int32_t nearest = 0;
-    (void)worker;
-    for (int64_t i = begin; i < end; i++)
-        q->distance[i] = sqrt(closest2(q->tree, q->point + 3 * i, &nearest));
-}
-
-qc_status qc__triangle_tree_distances(qc_ctx *ctx, const qc__triangle_tree *tree, int64_t n,
-                                      const double *point, double *distance) {
-    for (int64_t at = 0; at < n; at += BATCH) {
-        if (!qc__progress(ctx, (double)at / (double)n)) return QC_ERR_CANCELLED;
-        query q = {tree, point + 3 * at, distance + at};
-        qc__parallel_for(ctx, n - at < BATCH ? n - at : BATCH, CHUNK, run_queries, &q);
-    }
-    return QC_OK;
-}
+const qc_closest_point qc_closest_point_builtin = {
+    {sizeof(qc_closest_point), 0, "builtin", "tree of bounding boxes"}, NULL, build, query, destroy,
+};

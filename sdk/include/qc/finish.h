@@ -1,0 +1,39 @@
+/* qc/finish.h - after extraction: quads relaxed on the surface they were made from.
+ *
+ * Thread rule: that of qc/base.h; results do not depend on the number of threads. */
+#ifndef QC_FINISH_H
+#define QC_FINISH_H
+
+#include <qc/closest_point.h>
+#include <qc/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct qc_relax_options {
+    uint32_t struct_size;
+    int32_t rounds;    /* sweeps over all vertices                                              */
+    double quality;    /* scaled Jacobian a quad may fall to, but no lower (nor below its own)  */
+    double uniformity; /* 0: squares as large as their quad; 1: as large as the quads around it */
+    const uint8_t *feature; /* edges of the mesh (n_edges flags, borrowed) which quad edges on them
+                               are to stay on; NULL = none. The boundary always counts */
+    const qc_closest_point *closest; /* borrowed; NULL = builtin */
+} qc_relax_options;
+#define QC_RELAX_OPTIONS_INIT                                                                      \
+    { sizeof(qc_relax_options), 10, 0.6, 0.5, NULL, NULL }
+
+/* Moves the vertices of quads towards squares and keeps them on the surface: inner vertices are
+ * projected to the closest point, those on the boundary and on features slide along their curve,
+ * its ends and corners stay. No quad becomes worse than min(its start, quality), so none is turned
+ * over; then the neighbours of the worst quads are moved where that makes the worst better.
+ * Quads and their order stay; positions, source faces and barycentric coordinates (of `mesh`) are
+ * new. Without sources the closest points of the vertices are taken. Errors: ARGUMENT (a face which
+ * is no quad, a source which is no face of the mesh), NOMEM, CANCELLED, those of `closest`. */
+QC_API qc_status qc_quads_relax(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh *quads,
+                                const qc_relax_options *options, qc_polygon_mesh **out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
