@@ -1,5 +1,6 @@
 /* Contexts: creation, errors, log and progress. */
 #include "sdk/base/context_private.h"
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +42,7 @@ qc_status qc_ctx_create(const qc_ctx_options *options, qc_ctx **out) {
     ctx->user = o.user;
     ctx->isa = isa;
     ctx->threads = o.threads == 0 ? online_cores() : o.threads > 256 ? 256 : o.threads;
-    ctx->range = (qc__range){0.0, 1.0, ""};
+    ctx->range = (qc__range){0.0, 1.0, "", 0};
     atomic_init(&ctx->cancelled, false);
     qc__clear_error(ctx);
     *out = ctx;
@@ -132,7 +133,8 @@ void qc__log(qc_ctx *ctx, int32_t level, const char *format, ...) {
 bool qc__progress(qc_ctx *ctx, double fraction) {
     if (!ctx->progress) return true;
     const double f = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
-    const double whole = ctx->range.lo + f * (ctx->range.hi - ctx->range.lo);
+    double whole = ctx->range.lo + f * (ctx->range.hi - ctx->range.lo);
+    if (ctx->range.depth > 0) whole = ctx->furthest = fmax(whole, ctx->furthest);
     const bool go_on = ctx->progress(ctx->user, ctx->range.stage, whole);
     atomic_store(&ctx->cancelled, !go_on);
     if (go_on) return true;
@@ -151,8 +153,9 @@ bool qc__cancelled(const qc_ctx *ctx) {
 qc__range qc__range_begin(qc_ctx *ctx, const char *stage, double lo, double hi) {
     const qc__range outer = ctx->range;
     const double width = outer.hi - outer.lo;
-    ctx->range =
-        (qc__range){outer.lo + lo * width, outer.lo + hi * width, stage ? stage : outer.stage};
+    ctx->range = (qc__range){outer.lo + lo * width, outer.lo + hi * width,
+                             stage ? stage : outer.stage, outer.depth + 1};
+    if (outer.depth == 0) ctx->furthest = ctx->range.lo;
     return outer;
 }
 

@@ -17,6 +17,7 @@ struct qc_ctx {
     qc__pool *pool; /* made by the first parallel_for which needs it */
 
     qc__range range;
+    double furthest; /* fraction reported within the outermost range: a bar never runs back */
     atomic_bool cancelled;
 
     qc_error error;

@@ -57,11 +57,13 @@ bool qc__progress(qc_ctx *ctx, double fraction);
 /* True once the callback asked to stop; any thread may poll it inside a parallel_for. */
 bool qc__cancelled(const qc_ctx *ctx);
 
-/* Nested ranges: inside begin/end a fraction f is reported as lo + f (hi - lo) of the outer range.
+/* Nested ranges: inside begin/end a fraction f is reported as lo + f (hi - lo) of the outer range,
+ * never less than before within the outermost one: loops which start again do not run a bar back.
  * stage NULL keeps the name of the outer range. */
 typedef struct qc__range {
     double lo, hi;
     const char *stage;
+    int32_t depth; /* 0: outside of all ranges */
 } qc__range;
 qc__range qc__range_begin(qc_ctx *ctx, const char *stage, double lo, double hi);
 void qc__range_end(qc_ctx *ctx, qc__range outer);

@@ -36,17 +36,35 @@ static void ranges_nest(void **state) {
     assert_true(qc__progress(ctx, 0.25) && w.fraction == 0.25);
     assert_string_equal(w.stage, "");
     const qc__range outer = qc__range_begin(ctx, "hodge", 0.5, 1.0);
-    assert_true(qc__progress(ctx, 0.5) && w.fraction == 0.75);
+    assert_true(qc__progress(ctx, -1.0) && w.fraction == 0.5); /* clamped */
     const qc__range inner = qc__range_begin(ctx, NULL, 0.0, 0.5);
-    assert_true(qc__progress(ctx, 1.0) && w.fraction == 0.75);
-    assert_true(qc__progress(ctx, 7.0) && w.fraction == 0.75); /* clamped */
-    assert_true(qc__progress(ctx, -1.0) && w.fraction == 0.5);
+    assert_true(qc__progress(ctx, 0.5) && w.fraction == 0.625);
+    assert_true(qc__progress(ctx, 7.0) && w.fraction == 0.75);
     assert_string_equal(w.stage, "hodge");
     qc__log(ctx, QC_LOG_WARNING, "%d steps", 3);
     assert_string_equal(w.text, "2|hodge|3 steps");
     qc__range_end(ctx, inner);
     qc__range_end(ctx, outer);
     assert_true(qc__progress(ctx, 1.0) && w.fraction == 1.0);
+    qc_ctx_free(ctx);
+}
+
+/* Loops which start again report small fractions; who watches sees none go back. */
+static void fractions_never_fall_within_the_outermost_range(void **state) {
+    (void)state;
+    watcher w;
+    qc_ctx *ctx = watched(&w);
+    for (int run = 0; run < 2; run++) {
+        const qc__range outer = qc__range_begin(ctx, "round", 0.0, 1.0);
+        for (int trial = 0; trial < 3; trial++) {
+            const qc__range inner = qc__range_begin(ctx, NULL, 0.25, 0.75);
+            assert_true(qc__progress(ctx, 0.0) && w.fraction == (trial ? 0.75 : 0.25));
+            assert_true(qc__progress(ctx, 1.0) && w.fraction == 0.75);
+            qc__range_end(ctx, inner);
+        }
+        qc__range_end(ctx, outer);
+    }
+    assert_true(qc__progress(ctx, 0.1) && w.fraction == 0.1); /* outside of ranges: as given */
     qc_ctx_free(ctx);
 }
 
@@ -140,6 +158,7 @@ static void every_status_has_a_name(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranges_nest),
+        cmocka_unit_test(fractions_never_fall_within_the_outermost_range),
         cmocka_unit_test(false_cancels),
         cmocka_unit_test(errors_are_one_line),
         cmocka_unit_test(option_structs_of_any_size_are_read),
