@@ -1,0 +1,143 @@
+"""The main job: triangles in, quads out."""
+import os
+
+import numpy as np
+
+from ._c import ffi, lib
+from ._context import session, text
+from ._objects import FaceField, Mesh, PolygonMesh, RepairReport, wrap
+from .stages import _as_text
+
+_modes = {"fast": lib.QC_MODE_FAST, "relocate": lib.QC_MODE_RELOCATE, "best": lib.QC_MODE_BEST}
+
+
+class RemeshResult:
+    """What a run made.
+
+    vertices   (n, 3) positions of the quads
+    quads      (m, 4) their corners
+    source_face, barycentric   where on the input each vertex lies
+    mesh       the repaired triangle mesh
+    uv         the parameterization: a PolygonMesh with one uv per corner
+    field      the cross field on `mesh`
+    repairs    {what: how often}
+    warnings   lines about components without a result
+    """
+
+    def __init__(self, result):
+        def take(pointer):
+            return wrap(lib.qc_object_retain(pointer)) if pointer != ffi.NULL else None
+
+        self.mesh: Mesh = take(result.mesh)
+        self.polygons: PolygonMesh = take(result.quads)
+        self.uv: PolygonMesh = take(result.uv)
+        self.field: FaceField = take(result.field)
+        repairs: RepairReport = take(result.repairs)
+        self.repairs = repairs.counts if repairs else {}
+        self.warnings = [text(result.warning[i]) for i in range(result.n_warnings)]
+        none = self.polygons is None
+        self.vertices = None if none else self.polygons.position
+        self.quads = None if none else self.polygons.faces
+        self.source_face = None if none else self.polygons.source_face
+        self.barycentric = None if none else self.polygons.source_barycentric
+
+    def __iter__(self):
+        """vertices, quads = remesh(...)"""
+        return iter((self.vertices, self.quads))
+
+    def __repr__(self):
+        return "<quadcover.RemeshResult: %d quads>" % (0 if self.quads is None else len(self.quads))
+
+
+def _input(vertices, faces):
+    if isinstance(vertices, PolygonMesh):
+        return vertices
+    if isinstance(vertices, Mesh):
+        return PolygonMesh.from_arrays(vertices.vertices, vertices.faces)
+    if faces is None:
+        return PolygonMesh.read(vertices)
+    return PolygonMesh.from_arrays(vertices, faces)
+
+
+def default_pipeline(*, quads=0.0, edge_length=0.0, edge_length_rel=0.0, mode="best", sharp=0.0,
+                     features=True, field=None, seed=0):
+    """The steps of `remesh` as JSON, to be changed and given back as `pipeline`."""
+    s = session()
+    return _print(s, _default(s, quads, edge_length, edge_length_rel, mode, sharp, features, field,
+                              seed))
+
+
+def _default(s, quads, edge_length, edge_length_rel, mode, sharp, features, field, seed):
+    if mode not in _modes:
+        raise ValueError("mode is %r; give one of %s" % (mode, ", ".join(_modes)))
+    path = ffi.NULL if field is None else ffi.new("char[]", os.fsencode(field))
+    options = ffi.new("qc_default_pipeline_options *", {
+        "struct_size": ffi.sizeof("qc_default_pipeline_options"), "quads": quads or 0.0,
+        "edge_length": edge_length, "edge_length_rel": edge_length_rel,
+        "crease_angle": sharp if features else -1.0, "field_path": path, "seed": seed,
+        "mode": _modes[mode]})
+    return s.make("qc_pipeline", lib.qc_pipeline_free, lib.qc_default_pipeline, s.ctx, s.registry,
+                  options)
+
+
+def _print(s, pipeline):
+    out = ffi.new("char **")
+    s.check(lib.qc_pipeline_print(pipeline, out))
+    try:
+        return text(out[0])
+    finally:
+        lib.qc_text_free(out[0])
+
+
+def remesh(vertices, faces=None, *, quads=0.0, edge_length=0.0, edge_length_rel=0.0, mode="best",
+           sharp=0.0, features=True, field=None, seed=0, pipeline=None, set=None, strict=False,
+           progress=None):
+    """A triangle mesh becomes a pure quad mesh.
+
+    vertices, faces   positions (n, 3) and corners (m, 3) or a list of polygons; or a PolygonMesh, a
+                      Mesh or the path of a file alone
+    quads, edge_length, edge_length_rel   density: at most one of number of quads, length, length
+                      relative to the bounding box diagonal
+    mode              "fast", "relocate" or "best": how branch points are optimised
+    sharp             crease angle in degrees, 0 = 35; features=False: neither creases nor boundaries
+    field             path of a .rawfield or .rosy to use
+    pipeline          JSON of the steps instead of the default ones (see default_pipeline)
+    set               {"step.parameter": value}
+    strict            a component which fails fails the call
+    progress          progress(fraction, stage); False cancels (Cancelled), as Ctrl-C does
+    Returns a RemeshResult. Raises Error with .where and .stage.
+    """
+    s = session()
+    soup = _input(vertices, faces)
+    if pipeline is None:
+        steps = _default(s, quads, edge_length, edge_length_rel, mode, sharp, features, field, seed)
+    else:
+        steps = s.make("qc_pipeline", lib.qc_pipeline_free, lib.qc_pipeline_parse, s.registry,
+                       pipeline.encode())
+    for name, value in (set or {}).items():
+        step, _, parameter = name.rpartition(".")
+        s.check(lib.qc_pipeline_set(steps, step.encode(), parameter.encode(),
+                                    _as_text(value).encode()))
+    options = ffi.new("qc_remesh_options *", {"struct_size": ffi.sizeof("qc_remesh_options"),
+                                              "strict": int(strict)})
+    result = ffi.gc(ffi.new("qc_remesh_result *"), lib.qc_remesh_result_clear)
+    with s.reporting(progress):
+        s.call(lib.qc_remesh, steps, soup._c, options, result)
+    return RemeshResult(result)
+
+
+def shape(name, *, resolution=0, noise=0.0, retriangulate=False, genus=2, seed=1):
+    """One of the papers' surfaces as a Mesh; shapes() lists them."""
+    options = ffi.new("qc_shape_options *", {
+        "struct_size": ffi.sizeof("qc_shape_options"), "resolution": resolution, "noise": noise,
+        "retriangulate": int(retriangulate), "genus": genus, "seed": seed})
+    out = ffi.new("qc_mesh **")
+    session().call(lib.qc_shape_create, name.encode(), options, out)
+    return wrap(out[0])
+
+
+def shapes():
+    """{name: description} of the surfaces `shape` makes."""
+    count = ffi.new("size_t *")
+    table = lib.qc_shape_list(count)
+    return {text(table[i].name): text(table[i].doc) for i in range(count[0])}
