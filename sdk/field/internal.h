@@ -96,6 +96,23 @@ static inline bool qc__kept(const double *weight, const uint8_t *trusted, int32_
 qc_status qc__smoother_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
                               const uint8_t *trusted, double lambda, qc__smoother *out);
 void qc__smoother_free(qc__smoother *smoother);
+/* The factor for the present weights c.omega. */
+qc_status qc__smoother_factorise(qc_ctx *ctx, qc__smoother *smoother);
+
+/* The energy of cosine_smoothing.c about a field, in units of l^2. */
+typedef struct qc__cosine {
+    qc__smoother smoother;         /* its omega are the curvatures of the model               */
+    double *share;                 /* n_edges: A_e / l^2, 0 on the boundary                   */
+    double *alpha, *trial, *slope; /* n_faces                                                 */
+} qc__cosine;
+qc_status qc__cosine_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
+                            const uint8_t *trusted, double lambda, const qc_complex *x,
+                            qc__cosine *out);
+void qc__cosine_free(qc__cosine *cosine);
+/* E at the rotations alpha; slope: n_faces, its derivative, 0 at fixed faces. */
+double qc__cosine_energy(const qc__cosine *cosine, const double *alpha, double *slope);
+/* One step of cosine->alpha; the energy never rises. *changed: it fell. */
+qc_status qc__cosine_round(qc_ctx *ctx, qc__cosine *cosine, bool *changed);
 
 /* k in 0..3 such that edge vector e points nearest to i^k x, and how far it is off (radians). */
 static inline int32_t qc__axis(qc_complex e, qc_complex x) {

@@ -80,9 +80,11 @@ static void fill_matrix(qc__smoother *s) {
     }
 }
 
-static qc_status factorise(qc_ctx *ctx, qc__smoother *s) {
+qc_status qc__smoother_factorise(qc_ctx *ctx, qc__smoother *s) {
     qc_symmetric A = {s->mesh->n_faces, s->pattern.colptr, s->pattern.row, s->value};
     qc_symbolic *symbolic = NULL;
+    fill_matrix(s);
+    if (s->factor) return qc_refactorize_real(ctx, s->factor, &A);
     qc_status status = qc_analyze_real(ctx, &A, NULL, &symbolic);
     if (!status) status = qc_factorize_real(ctx, symbolic, &A, &s->factor);
     qc_symbolic_free(symbolic);
@@ -104,9 +106,7 @@ static qc_status prepare(qc_ctx *ctx, qc__smoother *s, const double *weight,
     if (!s->pull || !s->fixed || !s->value || !s->theta || !s->matched || !s->alpha)
         return QC_ERR_NOMEM;
     status = set_pull(ctx, s, weight, trusted);
-    if (status) return status;
-    fill_matrix(s);
-    return factorise(ctx, s);
+    return status ? status : qc__smoother_factorise(ctx, s);
 }
 
 qc_status qc__smoother_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,

@@ -26,3 +26,11 @@ qc_status qc_field_stability(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex 
     qc__free(theta);
     return status;
 }
+
+/* 2007 paper, 4.3: how far the face is from being umbilic, whatever its curvature. */
+void qc_field_anisotropy(const qc_mesh *mesh, const double *kappa, double *weight) {
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        const double a = kappa[2 * t], b = kappa[2 * t + 1], r = hypot(a, b);
+        weight[t] = r > 0 ? fabs(a - b) / r : 0;
+    }
+}

@@ -68,11 +68,10 @@ static void find_frozen(qc_distortion *d) {
             d->frozen[d->mesh->face_component[d->mesh->edge_halfedge[2 * e] / 3]] = 1;
 }
 
-static void find_hard(qc_distortion *d) {
-    const uint8_t *aligned = d->start->field->aligned;
-    for (int32_t e = 0; aligned && e < d->mesh->n_edges; e++)
+void qc__find_hard(const qc_face_field *field, uint8_t *hard) {
+    for (int32_t e = 0; field->aligned && e < field->mesh->n_edges; e++)
         for (int i = 0; i < 2; i++)
-            if (aligned[e]) d->hard[d->mesh->edge_vertex[2 * e + i]] = 1;
+            if (field->aligned[e]) hard[field->mesh->edge_vertex[2 * e + i]] = 1;
 }
 
 bool qc_distortion_can_flip(const qc_distortion *d, int32_t e) {
@@ -102,7 +101,7 @@ static qc_status prepare(qc_ctx *ctx, qc_distortion *d, const qc_sizing *sizing,
     if (status) return status;
     d->n = d->matrix->A.n;
     find_frozen(d);
-    find_hard(d);
+    qc__find_hard(d->start->field, d->hard);
     copy_start(d, sizing);
     if (d->n == 0) return QC_OK;
     if (!allocate_unknowns(ctx, d)) return QC_ERR_NOMEM;

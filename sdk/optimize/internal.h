@@ -61,6 +61,8 @@ void qc__weak_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step fli
 qc_complex qc__flip_side(const qc_distortion *d, qc_flip_step flip);
 /* The right-hand side of the smoothing changes by +-value at the two faces of the edge. */
 double qc__flip_bend(const qc_distortion *d, qc_flip_step flip, int32_t *s, int32_t *t);
+/* Marks the vertices on hard features of the field; hard: n_vertices, 0 before. */
+void qc__find_hard(const qc_face_field *field, uint8_t *hard);
 bool qc__face_is_fixed(const qc_distortion *d, int32_t t);
 /* The factor of the matrix as it is. */
 qc_status qc__refresh_factor(qc_ctx *ctx, qc_distortion *d);
@@ -88,6 +90,9 @@ typedef struct qc__rules {
 /* Whether the flip keeps the rules at the present state: number and indices of branch points, and
  * their distance. */
 bool qc__flip_allowed(const qc_distortion *d, const qc__rules *rules, qc_flip_step flip);
+
+/* Whether the index of a vertex may change so, in quarters. */
+bool qc__index_allowed(int32_t old, int32_t new);
 
 /* How many branch points more there are after the flip, -2 to 2. */
 int32_t qc__new_branch_points(const qc_distortion *d, qc_flip_step flip);

@@ -6,7 +6,7 @@
 /* A vertex of index 1/4 has valence 3, one of -2/4 valence 6: what control cages bear well. */
 enum { INDEX_MIN = -2, INDEX_MAX = 1 };
 
-static bool index_allowed(int32_t old, int32_t new) {
+bool qc__index_allowed(int32_t old, int32_t new) {
     return (new >= INDEX_MIN &&new <= INDEX_MAX) || abs(new) < abs(old);
 }
 
@@ -62,7 +62,7 @@ bool qc__flip_allowed(const qc_distortion *d, const qc__rules *rules, qc_flip_st
     const int32_t more = qc__new_branch_points(d, flip);
     for (int i = 0; i < 2; i++) {
         const int32_t old = d->index4[p[i]];
-        if (!qc_vertex_on_boundary(d->mesh, p[i]) && !index_allowed(old, old + step[i]))
+        if (!qc_vertex_on_boundary(d->mesh, p[i]) && !qc__index_allowed(old, old + step[i]))
             return false;
     }
     if (!rules->create && more > 0) return false;

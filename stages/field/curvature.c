@@ -7,11 +7,12 @@
 #include <math.h>
 
 typedef struct params {
-    int32_t estimator;
+    int32_t estimator, weight;
     double radius, trusted, feature_weight;
     bool extend;
 } params;
 
+enum { STABILITY, ANISOTROPY };
 #define DEFAULT_QUADS 10000.0
 
 /* The averaging disk: detail below the size of a quad is noise to the quad mesh; below two edges of
@@ -33,7 +34,9 @@ static qc_status compute(const qc_run *run, const params *given, work *w) {
     const qc_features *features = run->input(run, "features");
     double radius = disk_radius(mesh, run->input(run, "sizing"), given->radius);
     qc_status status = qc_field_curvature(ctx, mesh, given->estimator, radius, w->x, w->kappa);
-    if (!status) status = qc_field_stability(ctx, mesh, w->x, w->kappa, w->weight);
+    if (!status && given->weight == ANISOTROPY) qc_field_anisotropy(mesh, w->kappa, w->weight);
+    if (!status && given->weight == STABILITY)
+        status = qc_field_stability(ctx, mesh, w->x, w->kappa, w->weight);
     const double strength = features && features->hard ? INFINITY : given->feature_weight;
     if (!status && strength > 0)
         status = qc_field_align(ctx, mesh, features ? features->edge : NULL, strength, w->x,
@@ -78,10 +81,14 @@ static const qc_port outputs[] = {
      "principal directions with stability weights and trusted faces"},
 };
 static const char *const estimators[] = {"hildebrandt-polthier", "cohen-steiner-morvan", NULL};
+static const char *const weights[] = {"stability", "anisotropy", NULL};
 static const qc_param table[] = {
     QC_PARAM_ENUM(params, estimator, QC_CURVATURE_COHEN_STEINER_MORVAN, estimators,
                   "hildebrandt-polthier: average of the three vertex operators, for clean meshes; "
                   "cohen-steiner-morvan: average over a disk, for noisy ones"),
+    QC_PARAM_ENUM(params, weight, STABILITY, weights,
+                  "stability: |k1 - k2| l exp(-1/2 sum |theta|), thesis (5.2); anisotropy: |k1 - "
+                  "k2| / sqrt(k1^2 + k2^2), 2007 paper 4.3"),
     QC_PARAM_REAL(params, radius, 1.5, 0, 100, "quad",
                   "radius of that disk in edge lengths of the quads; never below two mean edges"),
     QC_PARAM_REAL(params, trusted, 0.3, 0, 1, "",
@@ -110,7 +117,7 @@ const qc_stage qc_stage_field_curvature = {
     3,
     1,
     table,
-    5,
+    6,
     sizeof(params),
     curvature,
 };

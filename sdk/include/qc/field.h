@@ -58,6 +58,9 @@ QC_API qc_status qc_field_curvature(qc_ctx *ctx, const qc_mesh *mesh, int32_t es
  * resolution. weight: n_faces; kappa: 2 n_faces. */
 QC_API qc_status qc_field_stability(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *x,
                                     const double *kappa, double *weight);
+/* Weights of the 2007 paper (4.3): |k1 - k2| / sqrt(k1^2 + k2^2), 0 where both vanish; between 0
+ * and sqrt(2) at every scale, however weak the curvature. weight: n_faces; kappa: 2 n_faces. */
+QC_API void qc_field_anisotropy(const qc_mesh *mesh, const double *kappa, double *weight);
 /* Turns the cross of each face with a feature edge along that edge, trusts it and raises its weight
  * to `strength`: soft alignment to creases and boundaries; INFINITY = hard alignment, which
  * smoothing, separation and optimisation keep exactly. edge: n_edges flags as in qc_features,
@@ -86,6 +89,15 @@ QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_comp
                                  const double *weight, const uint8_t *trusted,
                                  const uint8_t *aligned, double lambda, int32_t rounds,
                                  qc_complex *x);
+/* Nonlinear smoothing (2007 paper, 4.3): rotates the crosses by real alpha_t which minimise lambda
+ * sum A_e (1 - cos 4 (theta_e - alpha_s + alpha_t)) + (1 - lambda) sum w_t A_t alpha_t^2, the
+ * second sum over the trusted faces; at most so many rounds, in none of which the energy rises.
+ * Unlike qc_field_smooth lambda acts per edge of the mesh: details of about 3 sqrt(lambda / ((1 -
+ * lambda) w)) edges are smoothed away. weight, trusted NULL as there; both NULL: lambda acts as 1.
+ * x in place; a local minimum. Errors: ARGUMENT, NOMEM, CANCELLED. */
+QC_API qc_status qc_field_smooth_cosine(qc_ctx *ctx, const qc_mesh *mesh, const double *weight,
+                                        const uint8_t *trusted, double lambda, int32_t rounds,
+                                        qc_complex *x);
 /* Smoothest field: in each component the eigenvector of the smallest eigenvalue of the connection
  * Laplacian on fourth powers x^4, by inverse iteration on its factor. With alignment > 0 and weight
  * or trusted given: minimiser of E_S(x^4) + alignment sum w_t A_t / l^2 |x^4 - guide^4|^2 over the

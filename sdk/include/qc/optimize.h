@@ -110,6 +110,15 @@ typedef struct qc_cancel_options {
 QC_API qc_status qc_distortion_cancel(qc_ctx *ctx, qc_distortion *distortion,
                                       const qc_cancel_options *options, int32_t *cancelled);
 
+/* --- merging without a field solve (2007 paper, 4.2) ------------------------------------------ */
+
+/* A matching of the same field with fewer branch points: indices are carried along paths of edges,
+ * whose matchings turn, while C = lambda * branch points + sum |theta_e| falls; the largest fall
+ * first, at most `most` times. No index leaves -2/4 .. 1/4. cost (may be NULL): C before and after.
+ * Deterministic; any thread. Errors: ARGUMENT (lambda negative), NOMEM, CANCELLED. */
+QC_API qc_status qc_matching_merge(qc_ctx *ctx, const qc_matching *matching, double lambda,
+                                   int32_t most, double cost[2], qc_matching **out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -19,9 +19,11 @@ QC_API extern const qc_stage qc_stage_size;             /* qc.size            */
 QC_API extern const qc_stage qc_stage_split_features;   /* qc.split.features  */
 QC_API extern const qc_stage qc_stage_field_curvature;  /* qc.field.curvature */
 QC_API extern const qc_stage qc_stage_field_smooth;     /* qc.field.smooth    */
+QC_API extern const qc_stage qc_stage_field_cosine;     /* qc.field.cosine    */
 QC_API extern const qc_stage qc_stage_field_smoothest;  /* qc.field.smoothest */
 QC_API extern const qc_stage qc_stage_field_import;     /* qc.field.import    */
 QC_API extern const qc_stage qc_stage_matching;         /* qc.matching        */
+QC_API extern const qc_stage qc_stage_optimize_merge;   /* qc.optimize.merge */
 QC_API extern const qc_stage qc_stage_optimize_cancel;  /* qc.optimize.cancel */
 QC_API extern const qc_stage qc_stage_optimize_curl;    /* qc.optimize.curl */
 QC_API extern const qc_stage qc_stage_optimize_balance; /* qc.optimize.balance */
