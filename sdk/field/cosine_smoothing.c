@@ -11,7 +11,6 @@
  * s there, and both sides are bounded by its value at pi beyond). Its minimiser never raises E. */
 #include "internal.h"
 
-#include <float.h>
 #include <string.h>
 
 /* Least curvature of an edge: keeps the matrix positive definite. More curvature than that of the
@@ -19,8 +18,8 @@
 #define CURVATURE_MIN 1e-3
 /* Part of the decrease at first order which a Newton step has to reach. */
 #define SUFFICIENT 0.1
-/* Rounds end when no cross turns by more (radians). */
-#define TURN_MIN 1e-8
+/* Rounds end when the energy falls by no more than this part of it. */
+#define FALL_MIN 1e-10
 
 void qc__cosine_free(qc__cosine *c) {
     qc__smoother_free(&c->smoother);
@@ -93,7 +92,7 @@ static void set_model(qc__cosine *c, bool bound) {
 }
 
 /* trial = alpha + the step to the minimiser of the model; *expected: slope times step, < 0. */
-static qc_status step(qc_ctx *ctx, qc__cosine *c, bool bound, double *expected, double *turn) {
+static qc_status step(qc_ctx *ctx, qc__cosine *c, bool bound, double *expected) {
     qc__smoother *s = &c->smoother;
     const int32_t n = s->mesh->n_faces;
     set_model(c, bound);
@@ -102,28 +101,26 @@ static qc_status step(qc_ctx *ctx, qc__cosine *c, bool bound, double *expected, 
     for (int32_t t = 0; t < n; t++) s->alpha[t] = -c->slope[t] / 2;
     status = qc_solve_real(ctx, s->factor, 1, s->alpha);
     if (status) return status;
-    *expected = *turn = 0;
+    *expected = 0;
     for (int32_t t = 0; t < n; t++) {
         *expected += c->slope[t] * s->alpha[t];
-        *turn = fmax(*turn, fabs(s->alpha[t]));
         c->trial[t] = c->alpha[t] + s->alpha[t];
     }
     return QC_OK;
 }
 
 qc_status qc__cosine_round(qc_ctx *ctx, qc__cosine *c, bool *changed) {
-    double expected, turn;
+    double expected;
     const double before = qc__cosine_energy(c, c->alpha, c->slope);
     *changed = false;
     for (int bound = 0; bound < 2; bound++) {
-        const qc_status status = step(ctx, c, bound, &expected, &turn);
+        const qc_status status = step(ctx, c, bound, &expected);
         if (status) return status;
-        if (!(turn > TURN_MIN)) return QC_OK;
         /* the slope is needed again for the second model */
         const double after = qc__cosine_energy(c, c->trial, c->smoother.alpha);
         if (!(after < before + (bound ? 0 : SUFFICIENT * expected))) continue;
         memcpy(c->alpha, c->trial, (size_t)c->smoother.mesh->n_faces * sizeof *c->alpha);
-        *changed = true;
+        *changed = before - after > FALL_MIN * before;
         return QC_OK;
     }
     return QC_OK;

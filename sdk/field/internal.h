@@ -111,7 +111,8 @@ qc_status qc__cosine_create(qc_ctx *ctx, const qc_mesh *mesh, const double *weig
 void qc__cosine_free(qc__cosine *cosine);
 /* E at the rotations alpha; slope: n_faces, its derivative, 0 at fixed faces. */
 double qc__cosine_energy(const qc__cosine *cosine, const double *alpha, double *slope);
-/* One step of cosine->alpha; the energy never rises. *changed: it fell. */
+/* One step of cosine->alpha; the energy never rises. *changed: it fell by a relevant part
+ * of itself. */
 qc_status qc__cosine_round(qc_ctx *ctx, qc__cosine *cosine, bool *changed);
 
 /* k in 0..3 such that edge vector e points nearest to i^k x, and how far it is off (radians). */

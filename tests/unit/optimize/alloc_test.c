@@ -21,6 +21,9 @@ static qc_status work(qc_ctx *ctx, const void *data) {
     if (!status) status = qc_distortion_matching(ctx, d, &result);
     if (status && d) check_energy(s->other, d, NULL);
     qc_object_release(result);
+    result = NULL;
+    if (!status) status = qc_matching_merge(ctx, s->m, 5, INT32_MAX, NULL, &result);
+    qc_object_release(result);
     qc_distortion_free(d);
     return status;
 }
