@@ -59,8 +59,6 @@ def raster(image, size, mesh, colours, view, fit, box, line):
         d = at[face[3]] if len(face) > 3 else at[face[0]]
         u, w = [c[i] - a[i] for i in range(3)], [d[i] - b[i] for i in range(3)]
         normal = (u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0])
-        if normal[2] < 0:
-            continue
         middle = sum(q[2] for q in p) / len(p)
         fill = shade(normal, (middle - far) / (near - far), colours[0])
         edge = tuple(int(0.75 * e + 0.25 * f) for e, f in zip(colours[1], fill))

@@ -39,8 +39,7 @@ static double turned(const merger *s, int32_t h, int32_t a) {
 
 static void relax(merger *s, int32_t h, int32_t u, int32_t v, int32_t a) {
     const int32_t e = s->mesh->halfedge_edge[h];
-    if (s->mesh->edge_halfedge[2 * (size_t)e + 1] < 0 || s->kept[v] || abs(s->m[e]) > TURNS_MAX)
-        return;
+    if (s->kept[v] || abs(s->m[e]) > TURNS_MAX) return;
     const double cost = fmax(fabs(turned(s, h, a)) - fabs(s->theta[e]), 0);
     const double d = s->distance[u] + cost;
     if (!(d < s->distance[v])) return;

@@ -25,7 +25,7 @@ static qc_status merge(const qc_run *run, const void *raw) {
 static const qc_port in[] = {{"matching", QC_TYPE_MATCHING, 0, "cross field with its matching"}};
 static const qc_port out[] = {{"matching", QC_TYPE_MATCHING, 0, "the same field, matched anew"}};
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, lambda, 5, 0, 1e6, "rad",
+    QC_PARAM_REAL(params, lambda, 3, 0, 1e6, "rad",
                   "what a branch point costs against angles between matched directions: an edge on "
                   "the path costs up to pi / 2"),
 };
