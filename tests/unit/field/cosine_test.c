@@ -1,6 +1,7 @@
 /* Nonlinear smoothing (2007 paper, 4.3): slope against differences, descent to a critical point,
  * smooth fields stay, quarter turns of single crosses do not matter. */
 #include "surfaces.h"
+#include "unit/mesh/failing_allocator.h"
 
 #include "sdk/field/internal.h"
 
@@ -192,6 +193,22 @@ static void bad_arguments_leave_the_field_alone(void **state) {
     release(&s);
 }
 
+static qc_status smooth_a_copy(qc_ctx *ctx, const void *data) {
+    const start *s = data;
+    qc_complex *x = malloc(s->F * sizeof *x);
+    memcpy(x, s->x, s->F * sizeof *x);
+    const qc_status status = qc_field_smooth_cosine(ctx, s->mesh, s->weight, s->trusted, 0.5, 3, x);
+    if (status) assert_memory_equal(x, s->x, s->F * sizeof *x);
+    free(x);
+    return status;
+}
+
+static void failed_allocations_leave_the_field_alone(void **state) {
+    start s = create(*state, ellipsoid(*state, 6, 5, 1, 2, 3), 0.5, 4);
+    fail_every_allocation(smooth_a_copy, &s);
+    release(&s);
+}
+
 /* Weights between 0 (umbilic or flat) and sqrt(2) (opposite curvatures), whatever the scale. */
 static void anisotropy_is_a_ratio(void **state) {
     qc_ctx *ctx = *state;
@@ -212,6 +229,7 @@ int main(void) {
         cmocka_unit_test(quarter_turns_do_not_matter),
         cmocka_unit_test(scale_and_threads_do_not_matter),
         cmocka_unit_test(bad_arguments_leave_the_field_alone),
+        cmocka_unit_test(failed_allocations_leave_the_field_alone),
         cmocka_unit_test(anisotropy_is_a_ratio),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
