@@ -27,14 +27,11 @@ static double *period_matrix(qc_ctx *ctx, const qc_seamless_map *map, int32_t *n
     return P;
 }
 
-double *thesis_period_matrix(qc_ctx *ctx, const bench_source *source, int32_t *n) {
-    qc_matching *matching = bench_surface(ctx, source);
-    qc_sizing *sizing = bench_sizing(ctx, matching->field->mesh, source->quads);
+double *thesis_period_matrix(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
+                             int32_t *n) {
     qc_seamless_map *map = NULL;
     bench_check(ctx, qc_seamless_map_create(ctx, matching, sizing, NULL, &map));
     double *P = period_matrix(ctx, map, n);
     qc_object_release(map);
-    qc_object_release(sizing);
-    qc_object_release(matching);
     return P;
 }

@@ -58,9 +58,9 @@ static bool keep(const plot_curve *c, const axes *a, int32_t j, double last) {
     return j == 0 || j + 1 == c->n || c->n <= THIN || c->x[j] - last >= a->x / THIN;
 }
 
-/* 1, 2 or 5 times a power of ten, about a fifth of the whole. */
+/* 1, 2 or 5 times a power of ten, about an eighth of the whole. */
 static double tick(double whole) {
-    const double power = pow(10, floor(log10(whole / 5))), part = whole / 5 / power;
+    const double power = pow(10, floor(log10(whole / 8))), part = whole / 8 / power;
     return power * (part > 5 ? 10 : part > 2 ? 5 : part > 1 ? 2 : 1);
 }
 
@@ -136,7 +136,9 @@ static void write_svg(const plot *p, const axes *a, FILE *f) {
                 TOP + i / p->columns * cell_y);
         frame(f, p, a);
         text(f, 0.5 * WIDTH, -20, "middle", "#000", panel->title);
-        for (int k = 0; k < panel->n_curves; k++) draw_curve(f, &panel->curve[k], a);
+        for (int over = 0; over < 2; over++) /* repeated ones below the others */
+            for (int k = 0; k < panel->n_curves; k++)
+                if (panel->curve[k].repeated != over) draw_curve(f, &panel->curve[k], a);
         legend(f, panel);
         fprintf(f, "</g>\n");
     }

@@ -63,7 +63,9 @@ static void surface(const thesis_run *run, const char *mesh, int32_t instances, 
     double thesis[COLUMNS];
     char label[128], stem[64];
     int32_t n = 0;
-    double *P = thesis_period_matrix(run->ctx, &source, &n);
+    qc_matching *matching = bench_surface(run->ctx, &source);
+    qc_sizing *sizing = bench_sizing(run->ctx, matching->field->mesh, source.quads);
+    double *P = thesis_period_matrix(run->ctx, matching, sizing, &n);
     const outcome o = compare(run->ctx, n, P, instances, sweeps);
     for (int c = 0; c < COLUMNS; c++) {
         column[c] = c < N_METHODS ? METHODS[c].name : "annealed";
@@ -75,6 +77,8 @@ static void surface(const thesis_run *run, const char *mesh, int32_t instances, 
     thesis_compare("E_H, %", COLUMNS, thesis, o.share);
     thesis_row("ms each", COLUMNS, o.seconds);
     fflush(stdout);
+    qc_object_release(sizing);
+    qc_object_release(matching);
     free(P);
 }
 

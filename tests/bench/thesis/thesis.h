@@ -69,8 +69,9 @@ void plot_clear(plot *p);
 
 /* --- periods.c, anneal.c ---------------------------------------------------------------------- */
 
-/* The period matrix of a surface with the field of the default pipeline; n x n, free() it. */
-double *thesis_period_matrix(qc_ctx *ctx, const bench_source *source, int32_t *n);
+/* The period matrix (thesis 6.3.2); n x n, free() it. */
+double *thesis_period_matrix(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
+                             int32_t *n);
 /* Least energy which `runs` slow simulated annealings find in a reduced basis. */
 double thesis_anneal(qc_ctx *ctx, int32_t n, const double *P, const double *t, int32_t runs,
                      int64_t sweeps);
