@@ -2,7 +2,7 @@
 """Remeshes every mesh of the test data and every shape at some densities and in some modes, checks each
 result with `quadcover check --against`, and prints a line for each run and a table of the outcomes.
 
-A run counts as good when the program ends with status 0 within its time, the check finds nothing, all
+A run counts as good when the program ends with status 0 within its CPU time, the check finds nothing, all
 triangles of the map are positively oriented, Euler characteristic, boundary loops and components are those
 of the repaired input, and the number of quads is within 5 % of what was asked for. Standard library only."""
 import argparse
@@ -10,10 +10,10 @@ import collections
 import concurrent.futures
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), *[os.pardir] * 3)
 Run = collections.namedtuple("Run", "model path mode quads")
@@ -30,9 +30,9 @@ def parse():
     p.add_argument("--modes", default="fast,relocate,best")
     p.add_argument("--quads", default="10000,3000")
     p.add_argument("--only", default="", help="models whose name contains one of these, with commas")
-    p.add_argument("--limit", type=float, default=60, help="seconds of a run")
+    p.add_argument("--limit", type=int, default=60, help="CPU seconds of a run")
     p.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    p.add_argument("--set", action="append", default=[], help="passed on to the program")
+    p.add_argument("--set", action="append", default=[], metavar="STEP.PARAM=VALUE", help="passed on to the program")
     p.add_argument("--quick", action="store_true", help="two coarse shapes, mode fast: the smoke test")
     p.add_argument("--markdown", action="store_true", help="the table as Markdown, the lines on stderr")
     p.add_argument("--strict", action="store_true", help="status 1 unless all runs are good")
@@ -87,20 +87,22 @@ def verdict(stats, check, quads):
 
 def execute(a, folder, run):
     stem = os.path.join(folder, f"{run.model}-{run.mode}-{run.quads}".replace(" ", "_"))
-    remesh = [a.program, "remesh", run.path, "-o", stem + ".obj", "--quads", str(run.quads), "--mode",
+    remesh = ["sh", "-c", f'ulimit -t {a.limit}; exec "$@"', "sh", a.program, "remesh", run.path, "-o", stem + ".obj", "--quads", str(run.quads), "--mode",
               run.mode, "--stats", stem + ".json", "--threads", "1", "--progress", "none"]
     for value in a.set:
         remesh += ["--set", value]
-    start = time.monotonic()
-    try:
-        done = subprocess.run(remesh, capture_output=True, text=True, timeout=a.limit)
-    except subprocess.TimeoutExpired:
-        return Outcome(run, TIME, time.monotonic() - start, f"no result within {a.limit:.0f} s")
-    seconds = time.monotonic() - start
-    if done.returncode:
-        lines = done.stderr.strip().splitlines() or ["no message"]
-        status = ERROR if done.returncode in (1, 3) else CRASH
-        return Outcome(run, status, seconds, f"status {done.returncode}: {lines[-1]}")
+    with open(stem + ".err", "w+") as err:
+        child = subprocess.Popen(remesh, stdout=subprocess.DEVNULL, stderr=err)
+        usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(usage[1])
+        seconds = usage[2].ru_utime + usage[2].ru_stime
+        err.seek(0)
+        lines = err.read().strip().splitlines() or [""]
+    if child.returncode in (-signal.SIGXCPU, -signal.SIGKILL) and seconds >= a.limit - 1:
+        return Outcome(run, TIME, seconds, f"no result within {a.limit} s. {lines[-1]}")
+    if child.returncode:
+        status = ERROR if child.returncode in (1, 3) else CRASH
+        return Outcome(run, status, seconds, f"status {child.returncode}: {lines[-1]}")
     check = subprocess.run([a.program, "check", stem + ".obj", "--against", run.path, "--json"],
                            capture_output=True, text=True)
     try:
@@ -108,9 +110,7 @@ def execute(a, folder, run):
             status, text = verdict(json.load(f), json.loads(check.stdout), run.quads)
     except (OSError, ValueError, KeyError) as e:
         status, text = WRONG, f"unreadable figures: {e!r}"
-    for end in (".obj", ".json"):
-        if os.path.exists(stem + end):
-            os.remove(stem + end)
+    os.remove(stem + ".obj")
     return Outcome(run, status, seconds, text)
 
 

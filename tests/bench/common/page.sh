@@ -10,7 +10,6 @@ trap 'rm -f "$output" "$result"' EXIT
 {
     echo "Measured on $(date -u +%Y-%m-%d) with $(nproc) cores$(awk '$1 > 0.3 {
         printf "; other programs were running (load %.1f), so times are too long", $1 }' /proc/loadavg)."
-    echo
     "$@" || echo FAILED
 } >"$output"
 if grep -q '^FAILED$' "$output"; then exit 1; fi
