@@ -158,7 +158,7 @@ def main():
         for o in bad:
             text = o.text.replace(folder, "").replace(os.path.dirname(o.run.path) + os.sep, "")
             print(f"- {o.run.model}, `{o.run.mode}`, {o.run.quads} quads, {o.status}: {text}")
-    print(f"\n{len(outcomes) - len(bad)} of {len(outcomes)} runs good.")
+    print(f"\n{len(outcomes) - len(bad)} of {len(outcomes)} runs good, each with at most {a.limit} CPU seconds.")
     return 1 if a.strict and bad or not outcomes else 0
 
 
