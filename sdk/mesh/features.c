@@ -1,4 +1,4 @@
-/* Feature edges: the boundary, creases by dihedral angle, and edges given as vertex pairs. */
+/* Feature edges: the boundary, creases by dihedral angle, borders between groups of faces. */
 #include <string.h>
 
 #include "sdk/mesh/internal.h"
@@ -28,48 +28,37 @@ static double dihedral(const qc_mesh *m, const double *normal, const double *cot
     return atan2(sqrt(sine), cosine);
 }
 
-static qc_status mark_creases(qc_ctx *ctx, const qc_mesh *m, double angle, uint8_t *edge) {
+qc_status qc__crease_angles(qc_ctx *ctx, const qc_mesh *m, double *angle) {
     double *normal = QC__NEW(ctx, double, 3 * (size_t)m->n_faces);
     double *cotangent = QC__NEW(ctx, double, 3 * (size_t)m->n_faces);
     qc_status status = normal && cotangent ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK)
         status = qc_mesh_geometry(ctx, m, NULL, NULL, cotangent, NULL, normal, NULL);
-    for (int32_t e = 0; status == QC_OK && e < m->n_edges; e++) {
-        if (m->edge_halfedge[2 * e + 1] < 0)
-            edge[e] |= QC_FEATURE_BOUNDARY;
-        else if (dihedral(m, normal, cotangent, e) > angle)
-            edge[e] |= QC_FEATURE_CREASE;
-    }
+    for (int32_t e = 0; status == QC_OK && e < m->n_edges; e++)
+        angle[e] = m->edge_halfedge[2 * e + 1] < 0 ? 0 : dihedral(m, normal, cotangent, e);
     qc__free(normal);
     qc__free(cotangent);
     return status;
 }
 
-/* Edge from v to w, -1 when there is none. */
-static int32_t find_edge(const qc_mesh *m, int32_t v, int32_t w) {
-    if (v < 0 || w < 0 || v >= m->n_vertices || w >= m->n_vertices) return -1;
-    int32_t first = m->vertex_corner[v], c = first;
-    do {
-        if (m->face_vertex[qc_next(c)] == w) return m->halfedge_edge[qc_prev(c)];
-        if (m->face_vertex[qc_prev(c)] == w) return m->halfedge_edge[qc_next(c)];
-        c = qc_corner_ccw(m, c);
-    } while (c >= 0 && c != first);
-    return -1;
+static qc_status mark_creases(qc_ctx *ctx, const qc_mesh *m, double angle, uint8_t *edge) {
+    double *crease = QC__NEW(ctx, double, m->n_edges);
+    const qc_status status = crease ? qc__crease_angles(ctx, m, crease) : QC_ERR_NOMEM;
+    for (int32_t e = 0; status == QC_OK && e < m->n_edges; e++) {
+        if (m->edge_halfedge[2 * e + 1] < 0)
+            edge[e] |= QC_FEATURE_BOUNDARY;
+        else if (crease[e] > angle)
+            edge[e] |= QC_FEATURE_CREASE;
+    }
+    qc__free(crease);
+    return status;
 }
 
-static void mark_lines(qc_ctx *ctx, const qc_mesh *m, int32_t n_lines, const int32_t *line,
-                       uint8_t *edge) {
-    int32_t ignored = 0;
-    for (int32_t i = 0; line && i < n_lines; i++) {
-        int32_t e = find_edge(m, line[2 * (size_t)i], line[2 * (size_t)i + 1]);
-        if (e >= 0)
-            edge[e] |= QC_FEATURE_LINE;
-        else
-            ignored++;
+void qc_features_add_groups(const qc_mesh *m, const int32_t *group, uint8_t *edge) {
+    for (int32_t e = 0; e < m->n_edges; e++) {
+        const int32_t *h = m->edge_halfedge + 2 * e;
+        if (h[1] >= 0 && group[h[0] / 3] != group[h[1] / 3]) edge[e] |= QC_FEATURE_GROUP;
     }
-    if (ignored > 0)
-        qc__log(ctx, QC_LOG_WARNING, "%d of %d feature lines are no edges of the mesh: ignored",
-                (int)ignored, (int)n_lines);
 }
 
 static qc_status count_features(qc_ctx *ctx, qc_features *f, uint8_t *vertex) {
@@ -119,10 +108,10 @@ qc_status qc_features_detect(qc_ctx *ctx, const qc_mesh *m, double angle, int32_
                              const int32_t *line, qc_features **out) {
     uint8_t *edge = QC__ZERO(ctx, uint8_t, m->n_edges);
     qc_status status = edge ? mark_creases(ctx, m, angle, edge) : QC_ERR_NOMEM;
-    if (status == QC_OK) {
-        mark_lines(ctx, m, n_lines, line, edge);
-        status = qc_features_create(ctx, m, edge, false, out);
-    }
+    if (status == QC_OK && line)
+        status =
+            qc_features_add_strokes(ctx, m, m->n_vertices, m->position, n_lines, line, 0, edge);
+    if (status == QC_OK) status = qc_features_create(ctx, m, edge, false, out);
     qc__free(edge);
     return status;
 }

@@ -52,6 +52,9 @@ qc_status qc__mesh_components(qc_ctx *ctx, qc_mesh *mesh); /* face_component, n_
 qc_status qc__mesh_walk_boundary(qc_ctx *ctx, const qc_mesh *mesh, int32_t *n_loops,
                                  int32_t *loop_offset, int32_t *loop_vertex);
 
+/* Angle between the normals of the two faces (n_edges); 0 on the boundary and beside needles. */
+qc_status qc__crease_angles(qc_ctx *ctx, const qc_mesh *mesh, double *angle);
+
 static inline double qc__norm3(const double a[3]) {
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }

@@ -69,6 +69,12 @@ QC_API void qc_field_anisotropy(const qc_mesh *mesh, const double *kappa, double
  * first (qc_features_split). */
 QC_API qc_status qc_field_align(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                 double strength, qc_complex *x, double *weight, uint8_t *trusted);
+/* A copy of a given field with hard features: of the flagged edges (n_edges) those whose chain
+ * (qc_features_chains) the field follows within `tolerance` (radians) on nine tenths of its length;
+ * the crosses beside them are turned the rest of the way. How many chains were left out is a
+ * warning. */
+QC_API qc_status qc_field_follow(qc_ctx *ctx, const qc_face_field *field, const uint8_t *edge,
+                                 double tolerance, qc_face_field **out);
 /* Keeps the most stable faces of each component which make up `fraction` of its area, and those
  * already flagged in trusted (in and out: clear it first), and extends their directions to the
  * other faces breadth first by parallel transport (thesis 5.1.2). Faces of weight < 1e-6 are flat

@@ -203,10 +203,37 @@ typedef struct qc_features {
 /* Features from their flags (n_edges, copied). */
 QC_API qc_status qc_features_create(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                     bool hard, qc_features **out);
-/* Crease: dihedral angle above `angle` (radians). line: pairs of mesh vertices (may be NULL) whose
- * edges are features; pairs which are no edge are ignored and counted in the log. */
+/* The boundary and creases: dihedral angle above `angle` (radians). line: pairs of mesh vertices
+ * (may be NULL), strokes as in qc_features_add_strokes. */
 QC_API qc_status qc_features_detect(qc_ctx *ctx, const qc_mesh *mesh, double angle, int32_t n_lines,
                                     const int32_t *line, qc_features **out);
+
+/* The following work on flags (n_edges) before they become features. */
+
+/* Edges between faces of different groups (n_faces numbers). */
+QC_API void qc_features_add_groups(const qc_mesh *mesh, const int32_t *group, uint8_t *edge);
+/* Strokes: segments between points (3 n_points coordinates; segment: 2 n_segments numbers of
+ * points) near the surface. Points move to the nearest vertex of the mesh, those farther away than
+ * `reach` (units of the mesh) are ignored with their segments; the vertices are joined by the path
+ * of edges nearest to the segment. The mesh is not cut. Numbers out of range and segments without a
+ * path are ignored; how many is logged. Near-linear for short segments. Errors: NOMEM, CANCELLED.
+ */
+QC_API qc_status qc_features_add_strokes(qc_ctx *ctx, const qc_mesh *mesh, int32_t n_points,
+                                         const double *point, int32_t n_segments,
+                                         const int32_t *segment, double reach, uint8_t *edge);
+/* The chains of flagged edges (n_edges) between vertices with other than two of them, or two which
+ * turn back by more than 120 degrees: chain (n_edges) = number of each, from 0, -1 where there is
+ * no flag; *n chains. */
+QC_API qc_status qc_features_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
+                                    int32_t *chain, int32_t *n);
+/* Closes gaps of creases along edges of dihedral angle above `weak` (radians) which lead on from a
+ * free end to another feature, then drops creases with a free end shorter than `least` (units of
+ * the mesh; closed ones shorter than twice that), then of two features which meet in less than
+ * `sharp` (radians) the weaker one, each named by a warning with the numbers of the input: creases
+ * by their mean angle, then groups and strokes; the boundary stays. Repeats until nothing changes.
+ */
+QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double least,
+                                   double sharp, uint8_t *edge);
 
 /* --- repair ----------------------------------------------------------------------------------- */
 

@@ -104,7 +104,7 @@ static qc_status check_faces(qc__soup *s, qc__text *t) {
 }
 
 static qc_status check_counts(qc__soup *s, qc__text *t) {
-    if (s->n_face == 0)
+    if (s->n_face == 0 && s->n_line == 0)
         return qc__fail(s->ctx, QC_ERR_INPUT, s->binary ? 0 : t->line,
                         "%s: the file has no faces (%lld vertices); a surface mesh is needed, "
                         "not points or curves",

@@ -28,17 +28,43 @@ static inline qc_mesh *shape(qc_ctx *ctx, const char *name, int32_t resolution, 
     return scaled;
 }
 
-/* Creases above 35 degrees and boundaries, on a mesh with room for them; takes the mesh. */
-static inline qc_features *hard_features(qc_ctx *ctx, qc_mesh *mesh) {
+/* Creases above 35 degrees and boundaries without noise shorter than `least`, on a mesh with room
+ * for them; takes the mesh. */
+static inline qc_features *pruned_features(qc_ctx *ctx, qc_mesh *mesh, double least) {
     qc_features *found = NULL, *hard = NULL, *out = NULL;
     qc_mesh *refined = NULL;
+    uint8_t *edge = malloc((size_t)mesh->n_edges);
     assert_int_equal(qc_features_detect(ctx, mesh, 35 * PI / 180, 0, NULL, &found), QC_OK);
-    assert_int_equal(qc_features_create(ctx, mesh, found->edge, true, &hard), QC_OK);
+    memcpy(edge, found->edge, (size_t)mesh->n_edges);
+    assert_int_equal(qc_features_prune(ctx, mesh, 20 * PI / 180, least, 20 * PI / 180, edge),
+                     QC_OK);
+    assert_int_equal(qc_features_create(ctx, mesh, edge, true, &hard), QC_OK);
     assert_int_equal(qc_features_split(ctx, hard, NULL, &refined, &out, NULL), QC_OK);
     assert_ptr_equal(refined, out->mesh);
     const void *made[] = {found, hard, refined, mesh};
     for (size_t i = 0; i < sizeof made / sizeof *made; i++) qc_object_release(made[i]);
+    free(edge);
     return out;
+}
+
+static inline qc_features *hard_features(qc_ctx *ctx, qc_mesh *mesh) {
+    return pruned_features(ctx, mesh, 0);
+}
+
+/* No other edge joins two features, no face has two feature edges. */
+static inline void check_room(const qc_features *f) {
+    const qc_mesh *mesh = f->mesh;
+    assert_true(f->hard);
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        assert_true(f->edge[e] || !f->vertex[mesh->edge_vertex[2 * e]] ||
+                    !f->vertex[mesh->edge_vertex[2 * e + 1]]);
+        assert_true(mesh->edge_halfedge[2 * e + 1] >= 0 || f->edge[e] == QC_FEATURE_BOUNDARY);
+    }
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        int n = 0;
+        for (int k = 0; k < 3; k++) n += f->edge[mesh->halfedge_edge[3 * t + k]] != 0;
+        assert_true(n <= 1);
+    }
 }
 
 /* Every cross beside a feature runs along it to 1e-12. */

@@ -10,21 +10,6 @@ static const struct {
 } shapes[] = {{"cube", 300}, {"cylinder", 500}, {"truncated-cone", 600}, {"hyperboloid", 300}};
 enum { SHAPES = sizeof shapes / sizeof *shapes };
 
-static void check_room(const qc_features *f) {
-    const qc_mesh *mesh = f->mesh;
-    assert_true(f->hard);
-    for (int32_t e = 0; e < mesh->n_edges; e++) {
-        assert_true(f->edge[e] || !f->vertex[mesh->edge_vertex[2 * e]] ||
-                    !f->vertex[mesh->edge_vertex[2 * e + 1]]);
-        assert_true(mesh->edge_halfedge[2 * e + 1] >= 0 || f->edge[e] == QC_FEATURE_BOUNDARY);
-    }
-    for (int32_t t = 0; t < mesh->n_faces; t++) {
-        int n = 0;
-        for (int k = 0; k < 3; k++) n += f->edge[mesh->halfedge_edge[3 * t + k]] != 0;
-        assert_true(n <= 1);
-    }
-}
-
 static double feature_length(qc_ctx *ctx, const qc_features *f) {
     double *length = malloc(sizeof *length * (size_t)f->mesh->n_edges), sum = 0;
     assert_int_equal(qc_mesh_geometry(ctx, f->mesh, length, NULL, NULL, NULL, NULL, NULL), QC_OK);

@@ -19,36 +19,178 @@ static void test_cube(void **state) {
     qc_object_release(m);
 }
 
-static int32_t warnings;
-static void count_warnings(void *user, int32_t level, const char *stage, const char *text) {
-    (void)user, (void)stage, (void)text;
+static int32_t warnings, ignored;
+static void count_messages(void *user, int32_t level, const char *stage, const char *text) {
+    (void)user, (void)stage;
     warnings += level == QC_LOG_WARNING;
+    ignored += strstr(text, "ignored") != NULL;
+}
+
+static qc_ctx *listening(void) {
+    qc_ctx_options options = QC_CTX_OPTIONS_INIT;
+    options.log = count_messages;
+    qc_ctx *ctx = NULL;
+    warnings = ignored = 0;
+    assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
+    return ctx;
+}
+
+static int32_t count(const qc_mesh *m, const uint8_t *edge) {
+    int32_t n = 0;
+    for (int32_t e = 0; e < m->n_edges; e++) n += edge[e] != 0;
+    return n;
+}
+
+static uint8_t *boundary_flags(const qc_mesh *m) {
+    uint8_t *edge = calloc((size_t)m->n_edges, 1);
+    for (int32_t e = 0; e < m->n_edges; e++)
+        if (m->edge_halfedge[2 * e + 1] < 0) edge[e] = QC_FEATURE_BOUNDARY;
+    return edge;
 }
 
 static void test_boundary_and_lines(void **state) {
     (void)state;
-    qc_ctx_options options = QC_CTX_OPTIONS_INIT;
-    options.log = count_warnings;
-    qc_ctx *ctx = NULL;
-    assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
+    qc_ctx *ctx = listening();
     qc_mesh *m = grid(ctx, 6, 4, 0, 1);
     qc_features *f = NULL;
-    /* 5 vertices per column; interior edges (6, 7), (7, 8); two pairs which are no edges */
-    int32_t lines[] = {6, 7, 8, 7, 0, 12, 3, 99};
-    assert_int_equal(qc_features_detect(ctx, m, 0.5, 4, lines, &f), QC_OK);
+    /* 5 vertices per column; interior edges (6, 7), (7, 8); one vertex which is none */
+    int32_t lines[] = {6, 7, 8, 7, 3, 99};
+    assert_int_equal(qc_features_detect(ctx, m, 0.5, 3, lines, &f), QC_OK);
     assert_int_equal(f->n_creases, 0);
     assert_int_equal(f->n_feature_edges, 20 + 2);
     assert_int_equal(f->n_corners, 2); /* 6 and 8, the ends of the stroke */
-    assert_int_equal(warnings, 1);
+    assert_int_equal(ignored, 1);
+    assert_false(f->hard);
     qc_object_release(f);
+    qc_object_release(m);
+    qc_ctx_free(ctx);
+}
+
+/* A stroke above a plane of 20 x 20 cells becomes the row of edges below it, at any scale; what is
+ * far away is ignored. */
+static void test_strokes(void **state) {
+    (void)state;
+    const double scale[] = {1, 1e-6, 1e6};
+    for (int i = 0; i < 3; i++) {
+        qc_ctx *ctx = listening();
+        qc_mesh *m = grid(ctx, 20, 20, 0, scale[i]);
+        uint8_t *edge = calloc((size_t)m->n_edges, 1);
+        const double *p = m->position; /* 21 vertices per column */
+        double point[12];
+        for (int k = 0; k < 3; k++) {
+            const double lift = k == 2 ? 0.1 * m->mean_edge_length : 0;
+            point[k] = p[3 * (21 * 5 + 3) + k] + lift;
+            point[3 + k] = p[3 * (21 * 5 + 17) + k] + lift;
+            point[6 + k] = p[3 * (21 * 14 + 17) + k] + lift;
+            point[9 + k] = p[k] + (k == 2 ? 9 * m->mean_edge_length : 0);
+        }
+        const int32_t segment[] = {0, 1, 1, 2, 2, 3, 2, 7};
+        assert_int_equal(
+            qc_features_add_strokes(ctx, m, 4, point, 4, segment, m->mean_edge_length, edge),
+            QC_OK);
+        assert_int_equal(count(m, edge), 14 + 9);
+        assert_int_equal(ignored, 1);
+        for (int32_t e = 0; e < m->n_edges; e++) {
+            const int32_t v = m->edge_vertex[2 * e], w = m->edge_vertex[2 * e + 1];
+            if (!edge[e]) continue;
+            assert_int_equal(edge[e], QC_FEATURE_LINE);
+            assert_true((v / 21 == 5 && w / 21 == 5) || (v % 21 == 17 && w % 21 == 17));
+        }
+        free(edge);
+        qc_object_release(m);
+        qc_ctx_free(ctx);
+    }
+}
+
+static void test_groups(void **state) {
+    qc_mesh *m = grid(*state, 6, 4, 0, 1);
+    uint8_t *edge = calloc((size_t)m->n_edges, 1);
+    int32_t *group = calloc((size_t)m->n_faces, sizeof *group);
+    for (int32_t t = 0; t < m->n_faces; t++) group[t] = t >= m->n_faces / 2 ? 7 : 3;
+    qc_features_add_groups(m, group, edge);
+    assert_int_equal(count(m, edge), 4); /* across the columns */
+    free(edge);
+    free(group);
+    qc_object_release(m);
+}
+
+/* On a cube a scratch with a free end goes when it is shorter than asked for, and a missing piece
+ * of an edge comes back. */
+static void test_prune(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *m = voxels(ctx, 2, 2, 2, "########", 1);
+    qc_features *f = NULL;
+    assert_int_equal(qc_features_detect(ctx, m, 0.6, 0, NULL, &f), QC_OK);
+    uint8_t *edge = malloc((size_t)m->n_edges);
+    int32_t *chain = malloc((size_t)m->n_edges * sizeof *chain), n = 0, missing = -1, extra = -1;
+    memcpy(edge, f->edge, (size_t)m->n_edges);
+    assert_int_equal(qc_features_chains(ctx, m, edge, chain, &n), QC_OK);
+    assert_int_equal(n, 12);
+    for (int32_t e = 0; e < m->n_edges; e++) {
+        const int32_t v = m->edge_vertex[2 * e], w = m->edge_vertex[2 * e + 1];
+        assert_true((chain[e] >= 0) == (edge[e] != 0));
+        if (edge[e] && missing < 0) missing = e;
+        if (!edge[e] && (f->vertex[v] == 0) != (f->vertex[w] == 0)) extra = e;
+    }
+    assert_true(missing >= 0 && extra >= 0);
+    edge[missing] = 0;
+    edge[extra] = QC_FEATURE_CREASE;
+    const double length = m->mean_edge_length;
+    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0.1 * length, 0, edge), QC_OK);
+    assert_int_equal(edge[missing], QC_FEATURE_CREASE);
+    assert_int_equal(edge[extra], QC_FEATURE_CREASE);
+    assert_int_equal(qc_features_prune(ctx, m, 0.4, 2 * length, 0, edge), QC_OK);
+    assert_memory_equal(edge, f->edge, (size_t)m->n_edges);
+    /* longer than all edges: only what has a free end goes */
+    assert_int_equal(qc_features_prune(ctx, m, 0.4, 1e9, 0, edge), QC_OK);
+    assert_memory_equal(edge, f->edge, (size_t)m->n_edges);
+    free(edge);
+    free(chain);
+    qc_object_release(f);
+    qc_object_release(m);
+}
+
+/* A fan of 36 triangles: two strokes from its middle to the rim, 30 degrees apart. The boundary and
+ * one stroke stay when 40 degrees are asked for, both for 20. */
+static void test_sharp_features(void **state) {
+    (void)state;
+    enum { N = 36 };
+    double p[3 * (2 * N + 1)] = {0};
+    int32_t t[9 * N];
+    for (int i = 0; i < N; i++) {
+        const double a = 2 * PI * i / N;
+        const int32_t b = 1 + i, c = 1 + (i + 1) % N;
+        const int32_t face[9] = {0, b, c, b, b + N, c + N, b, c + N, c};
+        for (int k = 0; k < 2; k++) {
+            p[3 * (1 + i + N * k)] = (1 + k) * cos(a);
+            p[3 * (1 + i + N * k) + 1] = (1 + k) * sin(a);
+        }
+        memcpy(t + 9 * i, face, sizeof face);
+    }
+    qc_ctx *ctx = listening();
+    qc_mesh *m = NULL;
+    assert_int_equal(qc_mesh_create(ctx, 2 * N + 1, p, 3 * N, t, &m), QC_OK);
+    const int32_t stroke[] = {0, 1, 1, 1 + N, 0, 4, 4, 4 + N};
+    uint8_t *edge = boundary_flags(m);
+    assert_int_equal(
+        qc_features_add_strokes(ctx, m, m->n_vertices, m->position, 4, stroke, 0, edge), QC_OK);
+    assert_int_equal(count(m, edge), N + 4);
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 20 * PI / 180, edge), QC_OK);
+    assert_int_equal(count(m, edge), N + 4);
+    assert_int_equal(warnings, 0);
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 40 * PI / 180, edge), QC_OK);
+    assert_int_equal(count(m, edge), N + 2);
+    assert_int_equal(warnings, 1);
+    free(edge);
     qc_object_release(m);
     qc_ctx_free(ctx);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cube),
-        cmocka_unit_test(test_boundary_and_lines),
+        cmocka_unit_test(test_cube),    cmocka_unit_test(test_boundary_and_lines),
+        cmocka_unit_test(test_strokes), cmocka_unit_test(test_groups),
+        cmocka_unit_test(test_prune),   cmocka_unit_test(test_sharp_features),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
