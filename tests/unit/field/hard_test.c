@@ -4,6 +4,8 @@
 
 #include <qc/optimize.h>
 
+#include "unit/mesh/failing_allocator.h"
+
 static const struct {
     const char *name;
     int32_t resolution;
@@ -218,6 +220,78 @@ static void scale_and_threads_do_not_matter(void **state) {
     }
 }
 
+/* From the features to a refined matching, and a given field beside it. */
+static qc_status every_step(qc_ctx *ctx, const void *data) {
+    const qc_mesh *mesh = data;
+    qc_complex x[256];
+    double weight[256] = {0};
+    uint8_t trusted[256] = {0};
+    qc_mesh *fine = NULL, *finer = NULL;
+    qc_features *found = NULL, *hard = NULL, *f = NULL;
+    qc_sizing *sizing = NULL, *s = NULL, *t = NULL;
+    qc_face_field *field = NULL, *given = NULL;
+    qc_matching *m = NULL, *split = NULL;
+    qc_status status = qc_features_detect(ctx, mesh, 0.5, 0, NULL, &found);
+    if (!status) status = qc_features_create(ctx, mesh, found->edge, true, &hard);
+    if (!status) status = qc_sizing_create(ctx, mesh, 0.5, 0, NULL, &sizing);
+    if (!status) status = qc_features_split(ctx, hard, sizing, &fine, &f, &s);
+    for (int i = 0; i < 256; i++) x[i] = (qc_complex){1, 0.1 * i};
+    assert_true(status || fine->n_faces <= 256);
+    if (!status) status = qc_field_align(ctx, fine, f->edge, (double)INFINITY, x, weight, trusted);
+    if (!status) status = qc_field_smoothest(ctx, fine, weight, trusted, 1, 0.2, x);
+    if (!status) status = qc_field_smooth(ctx, fine, NULL, weight, trusted, f->edge, 0.5, 3, x);
+    if (!status) status = qc_field_separate(ctx, fine, 0.2, f->edge, trusted, x, NULL);
+    if (!status) status = qc_face_field_create(ctx, fine, x, weight, trusted, &field);
+    if (!status) status = qc_face_field_set_aligned(ctx, field, f->edge);
+    if (!status) status = qc_field_follow(ctx, field, f->edge, 0.1, &given);
+    if (!status) status = qc_matching_create(ctx, field, NULL, &m);
+    if (!status) status = qc_matching_split(ctx, m, s, &finer, &t, &split);
+    const void *made[] = {split, m, given, field, t, s, sizing, finer, fine, f, hard, found};
+    for (size_t i = 0; i < sizeof made / sizeof *made; i++) qc_object_release(made[i]);
+    return status;
+}
+
+static void failed_allocations_leave_nothing(void **state) {
+    qc_ctx *ctx = *state;
+    const double p[] = {1, 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1};
+    const int32_t t[] = {0, 1, 3, 0, 2, 1, 0, 3, 2, 1, 2, 3};
+    qc_mesh *mesh = NULL;
+    assert_int_equal(qc_mesh_create(ctx, 4, p, 4, t, &mesh), QC_OK);
+    fail_every_allocation(every_step, mesh);
+    qc_object_release(mesh);
+}
+
+/* A plane with a field along its sides, but for 5 degrees: all features stay and the crosses beside
+ * them are turned; at 30 degrees none stays. */
+static void given_fields_follow_what_they_agree_with(void **state) {
+    qc_ctx *ctx = *state;
+    const double off[] = {5 * PI / 180, 30 * PI / 180};
+    for (int i = 0; i < 2; i++) {
+        qc_features *f = hard_features(ctx, grid(ctx, PLANE, 7, 5, 1));
+        const qc_mesh *mesh = f->mesh;
+        const size_t F = (size_t)mesh->n_faces;
+        double *re = malloc(6 * F * sizeof *re), *im = re + 3 * F;
+        qc_complex *x = malloc(F * sizeof *x);
+        const double along[3] = {cos(off[i]), sin(off[i]), 0};
+        assert_int_equal(qc_tangent_frames(ctx, mesh, re, im), QC_OK);
+        for (size_t t = 0; t < F; t++) x[t] = in_frame(re, im, t, along);
+        qc_face_field *field = NULL, *out = NULL;
+        assert_int_equal(qc_face_field_create(ctx, mesh, x, NULL, NULL, &field), QC_OK);
+        assert_int_equal(qc_field_follow(ctx, field, f->edge, 15 * PI / 180, &out), QC_OK);
+        int32_t kept = 0;
+        for (int32_t e = 0; e < mesh->n_edges; e++) kept += out->aligned[e];
+        assert_int_equal(kept, i == 0 ? f->n_feature_edges : 0);
+        check_along(ctx, mesh, out->aligned, out->x);
+        qc_matching *m = NULL;
+        assert_int_equal(qc_matching_create(ctx, out, NULL, &m), QC_OK);
+        if (i == 0) check_matching(ctx, m);
+        const void *made[] = {m, out, field, f};
+        for (size_t j = 0; j < sizeof made / sizeof *made; j++) qc_object_release(made[j]);
+        free(re);
+        free(x);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(meshes_get_room),
@@ -227,6 +301,8 @@ int main(void) {
         cmocka_unit_test(sharp_tips_get_a_quarter_turn),
         cmocka_unit_test(sectors_open_in_random_fields),
         cmocka_unit_test(scale_and_threads_do_not_matter),
+        cmocka_unit_test(failed_allocations_leave_nothing),
+        cmocka_unit_test(given_fields_follow_what_they_agree_with),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
