@@ -81,18 +81,21 @@ typedef struct column {
     double *symbol;            /* n_symbols: values of the symbols, later their duals */
     double _Complex *wedge;    /* n_wedges: values of the wedges  */
     double _Complex *residual; /* n_wedges: K f' summed over the wedge */
+    double _Complex *F;        /* n_vertices */
 } column;
 
 static bool column_create(qc_ctx *ctx, const qc__periods *p, column *out) {
     out->symbol = QC__NEW(ctx, double, qc__seams_symbols(p->seams));
     out->wedge = QC__NEW(ctx, double _Complex, p->seams->n_wedges);
     out->residual = QC__NEW(ctx, double _Complex, p->seams->n_wedges);
-    return out->symbol && out->wedge && out->residual;
+    out->F = QC__NEW(ctx, double _Complex, p->seams->mesh->n_vertices);
+    return out->symbol && out->wedge && out->residual && out->F;
 }
 static void column_free(column *c) {
     qc__free(c->symbol);
     qc__free(c->wedge);
     qc__free(c->residual);
+    qc__free(c->F);
 }
 
 /* K y in one face: K = 1/2 sum of cotangents times the edge differences. */
@@ -104,6 +107,29 @@ static void face_residual(const double *cotangent, const double _Complex y[3],
     g[0] = d2 - d1;
     g[1] = d0 - d2;
     g[2] = d1 - d0;
+}
+
+void qc__periods_load(const qc__seams *s, const double *cotangent, const qc_complex *d,
+                      double _Complex *load) {
+    for (int32_t w = 0; w < s->n_wedges; w++) load[w] = 0;
+    for (int32_t c = 0; c < 3 * s->mesh->n_faces; c++) {
+        const double _Complex g = 0.5 * cotangent[c] * qc__complex(d[c]);
+        load[s->corner_wedge[qc_prev(c)]] += g;
+        load[s->corner_wedge[qc_next(c)]] -= g;
+    }
+}
+
+/* rhs -= W^T load. */
+static void subtract_load(const qc__periods *p, const double _Complex *load, double *rhs) {
+    const qc__seams *s = p->seams;
+    for (int32_t v = 0; v < s->mesh->n_vertices; v++) {
+        const int32_t *unknown = p->stiffness->unknown + 2 * (int64_t)v;
+        for (int32_t w = s->vertex_wedge[v]; w < s->vertex_wedge[v + 1]; w++) {
+            const double _Complex r = qc__turn(load[w], -s->wedge_turn[w]);
+            if (unknown[0] >= 0) rhs[unknown[0]] -= creal(r);
+            if (unknown[1] >= 0) rhs[unknown[1]] -= cimag(r);
+        }
+    }
 }
 
 /* Right-hand side -W^T K (wedge values) of L. */
@@ -125,29 +151,35 @@ static void assemble_rhs(const qc__periods *p, const double _Complex *wedge, dou
     }
 }
 
-static double _Complex vertex_value(const qc__map_stiffness *m, const double *x, int32_t v) {
-    const int32_t *unknown = m->unknown + 2 * (int64_t)v;
-    return (unknown[0] >= 0 ? x[unknown[0]] : 0) + (unknown[1] >= 0 ? x[unknown[1]] : 0) * I;
+/* The solution x as complex values at the vertices. */
+static void spread(const qc__map_stiffness *m, const double *x, double _Complex *F) {
+    for (int32_t v = 0; v < m->seams->mesh->n_vertices; v++) {
+        const int32_t *unknown = m->unknown + 2 * (int64_t)v;
+        F[v] = (unknown[0] >= 0 ? x[unknown[0]] : 0) + (unknown[1] >= 0 ? x[unknown[1]] : 0) * I;
+    }
 }
 
-/* O^T K f' over the faces at the seams, for the map with the solution x: dual (n_free). */
-static void project(const qc__periods *p, const double *x, column *scratch, double *dual) {
+/* K f' over the faces at the seams, summed over the wedges. */
+static void seam_residual(const qc__periods *p, const double _Complex *wedge,
+                          const double _Complex *F, double _Complex *residual) {
     const qc__seams *s = p->seams;
-    memset(scratch->residual, 0, sizeof *scratch->residual * (size_t)s->n_wedges);
+    memset(residual, 0, sizeof *residual * (size_t)s->n_wedges);
     for (int32_t i = 0; i < p->n_seam_faces; i++) {
         const int32_t t = p->seam_face[i];
         double _Complex y[3], g[3];
         for (int32_t k = 0; k < 3; k++) {
             const int32_t w = s->corner_wedge[3 * t + k];
-            const double _Complex F =
-                vertex_value(p->stiffness, x, s->mesh->face_vertex[3 * t + k]);
-            y[k] = scratch->wedge[w] + qc__turn(F, s->wedge_turn[w]);
+            y[k] = wedge[w] + qc__turn(F[s->mesh->face_vertex[3 * t + k]], s->wedge_turn[w]);
         }
         face_residual(p->stiffness->cotangent + 3 * (int64_t)t, y, g);
-        for (int32_t k = 0; k < 3; k++) scratch->residual[s->corner_wedge[3 * t + k]] += g[k];
+        for (int32_t k = 0; k < 3; k++) residual[s->corner_wedge[3 * t + k]] += g[k];
     }
-    qc__seams_wedge_duals(s, scratch->residual, scratch->symbol);
-    for (int32_t j = 0; j < s->n_free; j++) {
+}
+
+/* O^T of the residual: dual (n_free). symbol of scratch is overwritten. */
+static void project(const qc__periods *p, column *scratch, double *dual) {
+    qc__seams_wedge_duals(p->seams, scratch->residual, scratch->symbol);
+    for (int32_t j = 0; j < p->seams->n_free; j++) {
         double sum = 0;
         for (int64_t i = p->column_start[j]; i < p->column_start[j + 1]; i++)
             sum += p->column_value[i] * scratch->symbol[p->column_symbol[i]];
@@ -187,7 +219,9 @@ qc_status qc__period_matrix(qc_ctx *ctx, const qc__periods *p, double *P) {
         status = qc__map_stiffness_solve(ctx, p->stiffness, (int32_t)(last - first), x);
         for (int64_t j = first; j < last && status == QC_OK; j++) {
             load_column(p, j, &scratch);
-            project(p, x + (j - first) * rows, &scratch, P + j * n);
+            spread(p->stiffness, x + (j - first) * rows, scratch.F);
+            seam_residual(p, scratch.wedge, scratch.F, scratch.residual);
+            project(p, &scratch, P + j * n);
         }
     }
     if (status == QC_OK) symmetrise(P, n);
@@ -197,15 +231,28 @@ qc_status qc__period_matrix(qc_ctx *ctx, const qc__periods *p, double *P) {
 }
 
 qc_status qc__periods_extend(qc_ctx *ctx, const qc__periods *p, const double _Complex *wedge,
-                             double _Complex *F) {
+                             const double _Complex *load, double _Complex *F) {
     double *x = QC__NEW(ctx, double, p->stiffness->n);
     if (!x) return QC_ERR_NOMEM;
     assemble_rhs(p, wedge, x);
+    if (load) subtract_load(p, load, x);
     const qc_status status = qc__map_stiffness_solve(ctx, p->stiffness, 1, x);
-    for (int32_t v = 0; v < p->seams->mesh->n_vertices && status == QC_OK; v++)
-        F[v] = vertex_value(p->stiffness, x, v);
+    if (status == QC_OK) spread(p->stiffness, x, F);
     qc__free(x);
     return status;
+}
+
+qc_status qc__periods_slope(qc_ctx *ctx, const qc__periods *p, const double _Complex *wedge,
+                            const double _Complex *load, const double _Complex *F, double *slope) {
+    column scratch;
+    const bool done = column_create(ctx, p, &scratch);
+    if (done) {
+        seam_residual(p, wedge, F, scratch.residual);
+        for (int32_t w = 0; w < p->seams->n_wedges && load; w++) scratch.residual[w] += load[w];
+        project(p, &scratch, slope);
+    }
+    column_free(&scratch);
+    return done ? QC_OK : QC_ERR_NOMEM;
 }
 
 void qc__periods_corners(const qc__seams *s, const double _Complex *wedge, const double _Complex *F,
@@ -213,5 +260,18 @@ void qc__periods_corners(const qc__seams *s, const double _Complex *wedge, const
     for (int64_t c = 0; c < 3 * (int64_t)s->mesh->n_faces; c++) {
         const int32_t w = s->corner_wedge[c];
         f[c] = qc__pair(qc__turn(F[s->mesh->face_vertex[c]], s->wedge_turn[w]) + wedge[w]);
+    }
+}
+
+void qc__periods_split(const qc__seams *s, const qc_complex *f, double _Complex *wedge,
+                       double _Complex *F) {
+    for (int32_t v = 0; v < s->mesh->n_vertices; v++) {
+        const double _Complex value = qc__seams_value_at(s, f, v);
+        F[v] = (qc__seams_is_given(s, v, 0) ? 0 : creal(value)) +
+               (qc__seams_is_given(s, v, 1) ? 0 : cimag(value)) * I;
+    }
+    for (int64_t c = 0; c < 3 * (int64_t)s->mesh->n_faces; c++) {
+        const int32_t w = s->corner_wedge[c];
+        wedge[w] = qc__complex(f[c]) - qc__turn(F[s->mesh->face_vertex[c]], s->wedge_turn[w]);
     }
 }

@@ -27,12 +27,22 @@ void qc__periods_free(qc__periods *periods);
 /* P, n_free x n_free, column-major. */
 qc_status qc__period_matrix(qc_ctx *ctx, const qc__periods *periods, double *P);
 
-/* The map of least energy with given values in the wedges (qc__seams_wedge_values; any others do
- * too): F (n_vertices), zero at given coordinates. */
+/* The load of a form d (3 n_faces, on the edges opposite to the corners, in combed charts): the
+ * derivative of 1/2 int |dh + d|^2 at h = 0 by the values in the wedges; load: n_wedges. */
+void qc__periods_load(const qc__seams *seams, const double *cotangent, const qc_complex *d,
+                      double _Complex *load);
+/* The map h with given values in the wedges (qc__seams_wedge_values; any others do too) of least
+ * 1/2 int |dh + d|^2, d by its load, NULL = 0: F (n_vertices), zero at given coordinates. */
 qc_status qc__periods_extend(qc_ctx *ctx, const qc__periods *periods, const double _Complex *wedge,
-                             double _Complex *F);
-/* Corner values f' = i^{a_w} F_v + wedge (3 n_faces). */
+                             const double _Complex *load, double _Complex *F);
+/* Derivative of that energy by the free variables: slope (n_free). Errors: NOMEM. */
+qc_status qc__periods_slope(qc_ctx *ctx, const qc__periods *periods, const double _Complex *wedge,
+                            const double _Complex *load, const double _Complex *F, double *slope);
+/* Corner values f' = i^{a_w} F_v + wedge (3 n_faces), and back: what f has in the wedges besides
+ * the unknown coordinates of F_v. */
 void qc__periods_corners(const qc__seams *seams, const double _Complex *wedge,
                          const double _Complex *F, qc_complex *f);
+void qc__periods_split(const qc__seams *seams, const qc_complex *f, double _Complex *wedge,
+                       double _Complex *F);
 
 #endif

@@ -2,7 +2,9 @@
  * the gap (thesis 4.2.1, 4.2.2, 6.3). When a number of quads is asked for, the map is rescaled and
  * rounded again until its area meets it: periods scale with the map, the period matrix does not
  * change. */
-#include "sdk/map/periods/period_matrix.h"
+#include "sdk/map/periods/align.h"
+#include "sdk/map/periods/features.h"
+#include "sdk/map/periods/frame_form.h"
 #include "sdk/map/periods/separation.h"
 #include "sdk/map/periods/wrong_cones.h"
 #include <math.h>
@@ -10,6 +12,7 @@
 
 enum {
     LARGEST_PERIOD_MATRIX = 4000, /* variables; beyond it periods are rounded directly */
+    STIFFENING_ROUNDS = 12,
     DENSITY_ROUNDS = 24,
     NEWTON_ROUNDS = 5,   /* of these; then scales about the best are scanned */
     WINDING_ROUNDS = 13, /* in so many, cones which wind wrong are a reason to go on */
@@ -26,6 +29,7 @@ typedef struct rounding {
     const qc_seamless_map *seamless;
     const qc_mesh *mesh;
     qc_round_options options;
+    double *weight;    /* n_faces: of the seamless map, raised where features fold it; NULL = 1 */
     double *cotangent; /* times the weights of the faces */
     qc__seams *seams;
     qc__periods *periods;
@@ -37,8 +41,9 @@ typedef struct rounding {
     double *symbol;                  /* n_symbols */
     double _Complex *wedge;          /* n_wedges */
     double _Complex *F, *correction; /* n_vertices: unknown coordinates of f, and what is added */
-    qc_complex *f; /* 3 n_faces: the shifted seamless map                                */
+    qc_complex *f; /* 3 n_faces: the shifted, aligned seamless map                                */
     qc_complex *trial, *best; /* 3 n_faces */
+    double curl_energy;       /* of f, before scaling */
     double best_scale, best_miss, harmonic, harmonic_direct;
     int64_t moves, evaluations;
     bool coarse;        /* this trial only tells the number of quads */
@@ -46,18 +51,6 @@ typedef struct rounding {
     int32_t best_collisions; /* ... and in the best map                                           */
     int32_t wrong, best_wrong; /* cones which wind wrong */
 } rounding;
-
-/* --- periods of the seamless map -------------------------------------------------------------- */
-
-/* The unknown coordinates of f. */
-static void read_unknowns(rounding *r) {
-    const qc__seams *s = r->seams;
-    for (int32_t v = 0; v < r->mesh->n_vertices; v++) {
-        const double _Complex F = qc__seams_value_at(s, r->f, v);
-        r->F[v] = (qc__seams_is_given(s, v, 0) ? 0 : creal(F)) +
-                  (qc__seams_is_given(s, v, 1) ? 0 : cimag(F)) * I;
-    }
-}
 
 /* --- one trial -------------------------------------------------------------------------------- */
 
@@ -76,7 +69,7 @@ static double dirichlet_energy(const rounding *r, const qc_complex *f) {
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
         const qc_complex a = f[qc_next((int32_t)c)], b = f[qc_prev((int32_t)c)];
         const double du = b.re - a.re, dv = b.im - a.im;
-        const double weight = r->seamless->weight ? r->seamless->weight[c / 3] : 1.0;
+        const double weight = r->weight ? r->weight[c / 3] : 1.0;
         energy += 0.25 * r->cotangent[c] / weight * (du * du + dv * dv);
     }
     return energy;
@@ -124,7 +117,7 @@ static qc_status round_periods(rounding *r, qc_lattice_result *result) {
 static qc_status solve_gap(rounding *r) {
     qc__seams_symbol_values(r->seams, r->gap, r->symbol);
     qc__seams_wedge_values(r->seams, r->symbol, r->wedge);
-    return qc__periods_extend(r->ctx, r->periods, r->wedge, r->correction);
+    return qc__periods_extend(r->ctx, r->periods, r->wedge, NULL, r->correction);
 }
 
 /* Energy of the harmonic map which direct rounding would add; the trial map serves as space. */
@@ -160,7 +153,7 @@ static bool is_better(const rounding *r, double miss) {
  * quads. */
 static qc_status try_scale(rounding *r, double scale, double wanted, double *quads) {
     qc_lattice_result result = {0};
-    const bool weighted = r->P && r->seamless->weight; /* then P measures in another norm */
+    const bool weighted = r->P && r->weight; /* then P measures in another norm */
     const bool measured = !r->P || weighted;
     qc_status status = QC_OK;
     memset(r->correction, 0, sizeof *r->correction * (size_t)r->mesh->n_vertices);
@@ -247,11 +240,15 @@ static qc_status prepare(rounding *r) {
     memcpy(r->f, seamless->f, sizeof *r->f * (size_t)n_corners);
     qc_status status =
         qc_mesh_geometry(r->ctx, r->mesh, NULL, NULL, r->cotangent, NULL, NULL, NULL);
-    for (int64_t c = 0; c < n_corners && status == QC_OK && seamless->weight; c++)
-        r->cotangent[c] *= seamless->weight[c / 3];
+    if (status == QC_OK && seamless->weight) {
+        r->weight = QC__NEW(r->ctx, double, r->mesh->n_faces);
+        if (!r->weight) return QC_ERR_NOMEM;
+        memcpy(r->weight, seamless->weight, sizeof *r->weight * (size_t)r->mesh->n_faces);
+        for (int64_t c = 0; c < n_corners; c++) r->cotangent[c] *= r->weight[c / 3];
+    }
     if (status == QC_OK)
         status = qc__seams_create(r->ctx, &cover, seamless->cut, seamless->face_turn,
-                                  seamless->matching->index4, &r->seams);
+                                  seamless->matching->index4, seamless->matching->axis, &r->seams);
     if (status == QC_OK) status = qc__seams_solve(r->ctx, r->seams, r->options.lattice);
     if (status != QC_OK) return status;
     const int64_t n = r->seams->n_free;
@@ -267,8 +264,7 @@ static qc_status prepare(rounding *r) {
         !r->correction)
         return QC_ERR_NOMEM;
     status = qc__seams_read(r->ctx, r->seams, r->f, r->period);
-    if (status == QC_OK) read_unknowns(r);
-    if (status == QC_OK && n > 0)
+    if (status == QC_OK && (n > 0 || r->seams->n_levels > 0))
         status = qc__periods_create(r->ctx, r->seams, r->cotangent, r->options.solver, &r->periods);
     return status;
 }
@@ -292,6 +288,91 @@ static qc_status make_period_matrix(rounding *r) {
                                  &r->separation);
 }
 
+/* The frame field in combed charts. */
+static qc_status combed_frame(const rounding *r, qc_complex *z) {
+    const qc_seamless_map *seamless = r->seamless;
+    const qc_status status = qc__frame_form(r->ctx, seamless->matching, seamless->sizing, z);
+    for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces && status == QC_OK; c++)
+        z[c] = qc_quarter_turn(z[c], seamless->face_turn[c / 3]);
+    return status;
+}
+
+/* 1/2 int |dg - z|^2 for the aligned map, before scaling. */
+static double curl_energy(const rounding *r, const qc_complex *z) {
+    double energy = 0;
+    for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
+        const qc_complex a = r->f[qc_next((int32_t)c)], b = r->f[qc_prev((int32_t)c)];
+        const double re = b.re - a.re - z[c].re, im = b.im - a.im - z[c].im;
+        energy +=
+            0.25 * r->cotangent[c] / (r->weight ? r->weight[c / 3] : 1.0) * (re * re + im * im);
+    }
+    return energy;
+}
+
+/* Raises the weights where the map folds over, and makes stiffness and period matrix anew. */
+static qc_status stiffen(rounding *r) {
+    const int32_t n_faces = r->mesh->n_faces;
+    if (!r->weight) {
+        r->weight = QC__NEW(r->ctx, double, n_faces);
+        if (!r->weight) return QC_ERR_NOMEM;
+        for (int32_t t = 0; t < n_faces; t++) r->weight[t] = 1;
+    }
+    for (int32_t c = 0; c < 3 * n_faces; c++) r->cotangent[c] /= r->weight[c / 3];
+    qc__stiffen(r->mesh, r->f, r->weight);
+    for (int32_t c = 0; c < 3 * n_faces; c++) r->cotangent[c] *= r->weight[c / 3];
+    qc__periods_free(r->periods);
+    r->periods = NULL;
+    const qc_status status =
+        qc__periods_create(r->ctx, r->seams, r->cotangent, r->options.solver, &r->periods);
+    return status == QC_OK && r->P ? qc__period_matrix(r->ctx, r->periods, r->P) : status;
+}
+
+static int32_t count_folded(const rounding *r) {
+    int32_t n = 0;
+    for (int32_t t = 0; t < r->mesh->n_faces; t++) n += signed_area(r->f + 3 * (int64_t)t, 1) <= 0;
+    return n;
+}
+
+/* Puts the features of the seamless map on isolines, with real levels; stiffens while that makes it
+ * fold over. */
+static qc_status align_features(rounding *r) {
+    qc_complex *z = QC__NEW(r->ctx, qc_complex, 3 * (int64_t)r->mesh->n_faces);
+    qc_status status = z ? combed_frame(r, z) : QC_ERR_NOMEM;
+    for (int32_t i = 0; status == QC_OK; i++) {
+        if (!qc__progress(r->ctx, 0.6)) status = QC_ERR_CANCELLED;
+        if (status == QC_OK) status = qc__align(r->ctx, r->periods, r->P, z, r->f, r->period);
+        if (status != QC_OK || i == STIFFENING_ROUNDS || count_folded(r) == 0) break;
+        status = stiffen(r);
+    }
+    if (status == QC_OK) r->curl_energy = curl_energy(r, z);
+    qc__free(z);
+    return status;
+}
+
+static qc_status align(rounding *r) {
+    r->curl_energy = r->seamless->curl_energy;
+    const qc_status status = r->seams->n_levels > 0 ? align_features(r) : QC_OK;
+    if (status == QC_OK) qc__periods_split(r->seams, r->f, r->wedge, r->F);
+    return status;
+}
+
+/* The features in the charts of the map. */
+static qc_status publish_axis(rounding *r, qc_corner_map *map) {
+    const qc_matching *matching = r->seamless->matching;
+    if (!matching->axis) return QC_OK;
+    const qc_cover cover = {r->mesh, matching->m};
+    const qc__features features = {&cover, r->seamless->face_turn, matching->axis};
+    int8_t *axis = QC__NEW(r->ctx, int8_t, r->mesh->n_edges);
+    if (!axis) return QC_ERR_NOMEM;
+    for (int32_t e = 0; e < r->mesh->n_edges; e++) {
+        const int32_t h = r->mesh->edge_halfedge[2 * (int64_t)e];
+        axis[e] = qc__is_feature(&features, h) ? (int8_t)qc__feature_direction(&features, h) : -1;
+    }
+    const qc_status status = qc_corner_map_set_axis(r->ctx, map, axis);
+    qc__free(axis);
+    return status;
+}
+
 static qc_status publish(rounding *r, qc_corner_map **out) {
     const qc_seamless_map *seamless = r->seamless;
     const int32_t n_faces = r->mesh->n_faces;
@@ -312,6 +393,7 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
         status = qc_corner_map_create(r->ctx, r->mesh, &r->best[0].re,
                                       seamless->sizing->edge_length / r->best_scale, cross, &map);
     if (status == QC_OK) status = qc_corner_map_set_rotation(r->ctx, map, rotation);
+    if (status == QC_OK) status = publish_axis(r, map);
     if (status == QC_OK) {
         for (int64_t c = 0; c < 3 * (int64_t)n_faces; c++) {
             r->trial[c].re = r->best_scale * r->f[c].re;
@@ -327,7 +409,7 @@ static qc_status publish(rounding *r, qc_corner_map **out) {
     }
     const double square = r->best_scale * r->best_scale;
     map->field_energy = square * seamless->field_energy;
-    map->curl_energy = square * seamless->curl_energy;
+    map->curl_energy = square * r->curl_energy;
     map->harmonic_energy = r->harmonic;
     map->harmonic_energy_direct = r->harmonic_direct;
     map->iterations = r->moves;
@@ -368,6 +450,7 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
     qc_status status = refuse_impossible(&r);
     if (status == QC_OK) status = prepare(&r);
     if (status == QC_OK) status = make_period_matrix(&r);
+    if (status == QC_OK) status = align(&r);
     if (status == QC_OK) status = meet_density(&r);
     if (status == QC_OK && r.best_collisions > 0)
         qc__log(ctx, QC_LOG_WARNING, "%d pairs of cones are too close for this density",
@@ -376,8 +459,8 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
     qc__separation_free(r.separation);
     qc__periods_free(r.periods);
     qc__seams_free(r.seams);
-    void *const blocks[] = {r.cotangent, r.f,       r.trial,  r.best,  r.P, r.period,    r.gap,
-                            r.target,    r.rounded, r.symbol, r.wedge, r.F, r.correction};
+    void *const blocks[] = {r.weight, r.cotangent, r.f,       r.trial,  r.best,  r.P, r.period,
+                            r.gap,    r.target,    r.rounded, r.symbol, r.wedge, r.F, r.correction};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

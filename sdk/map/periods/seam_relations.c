@@ -28,14 +28,16 @@ typedef struct solver {
 } solver;
 
 int32_t qc__seams_component(const qc__seams *s, int32_t symbol) {
-    const int32_t j = symbol / 2;
-    const int32_t v =
-        j < s->n_segments ? s->segment_node[2 * (int64_t)j] : s->cone_vertex[j - s->n_segments];
+    const int32_t j = symbol / 2, level = symbol - qc__level_symbol(s, 0);
+    const int32_t v = level >= 0          ? s->level_coordinate[level] / 2
+                      : j < s->n_segments ? s->segment_node[2 * (int64_t)j]
+                                          : s->cone_vertex[j - s->n_segments];
     return s->mesh->face_component[s->mesh->vertex_corner[v] / 3];
 }
 
 double qc__seams_shift(const qc__seams *s, int32_t symbol, double _Complex w) {
-    const int32_t j = symbol / 2;
+    const int32_t j = symbol / 2, level = symbol - qc__level_symbol(s, 0);
+    if (level >= 0) return s->level_coordinate[level] % 2 ? cimag(w) : creal(w);
     const double _Complex change = j < s->n_segments ? w - qc__turn(w, s->segment_turn[j]) : w;
     return symbol % 2 ? cimag(change) : creal(change);
 }
@@ -111,6 +113,7 @@ static void grow_forest(solver *q) {
  * these multiples can be is left to the relations. */
 static int64_t twice_unit(const qc__seams *s, int32_t lattice, int32_t symbol) {
     const int32_t j = symbol / 2;
+    if (symbol >= qc__level_symbol(s, 0)) return 2;
     if (j < s->n_segments) return lattice == QC_LATTICE_EVEN ? 4 : 2;
     return lattice == QC_LATTICE_INTEGER && s->cone_turn[j - s->n_segments] != 0 ? 1 : 2;
 }
@@ -167,6 +170,24 @@ static qc_status add_closings(solver *q) {
                                                 : -1;
             status = add_closing(q, n, part, prefer, &pivot);
         }
+    }
+    return status;
+}
+
+/* What features ask for: levels which end in points, come back or meet. */
+static qc_status add_level_relations(solver *q) {
+    const qc__seams *s = q->s;
+    qc_status status = QC_OK;
+    for (int32_t k = 0; k < s->n_level_relations && status == QC_OK; k++) {
+        const int64_t start = s->level_relation_start[k], end = s->level_relation_start[k + 1];
+        int64_t *value = QC__NEW(q->ctx, int64_t, end - start);
+        if (!value) return QC_ERR_NOMEM;
+        for (int64_t i = start; i < end; i++)
+            value[i - start] =
+                s->level_relation_value[i] * twice_unit(s, q->lattice, s->level_relation_symbol[i]);
+        status = qc__relations_add(q->ctx, q->relations, (int32_t)(end - start),
+                                   s->level_relation_symbol + start, value, -1, NULL);
+        qc__free(value);
     }
     return status;
 }
@@ -298,6 +319,7 @@ qc_status qc__seams_solve(qc_ctx *ctx, qc__seams *s, int32_t lattice) {
         grow_forest(&q);
         status = add_closings(&q);
     }
+    if (status == QC_OK) status = add_level_relations(&q);
     if (status == QC_OK)
         status = qc__relations_solve(ctx, q.relations, &s->n_free, &s->symbol_row, &s->free_row);
     if (status == QC_OK) {

@@ -62,7 +62,8 @@ double _Complex qc__seams_value_at(const qc__seams *s, const qc_complex *f, int3
     return qc__complex(f[c]);
 }
 
-/* Values of the symbols in the map: positions of cones, translations across segments. */
+/* Values of the symbols in the map: positions of points, translations across segments, levels at
+ * one place. */
 static void measure_symbols(const qc__seams *s, const qc_complex *f, double *symbol) {
     for (int32_t e = 0; e < s->mesh->n_edges; e++) {
         const int32_t k = s->edge_segment[e];
@@ -78,6 +79,11 @@ static void measure_symbols(const qc__seams *s, const qc_complex *f, double *sym
         const double _Complex p = qc__seams_value_at(s, f, s->cone_vertex[i]);
         symbol[qc__position_symbol(s, i, 0)] = creal(p);
         symbol[qc__position_symbol(s, i, 1)] = cimag(p);
+    }
+    for (int32_t i = 0; i < s->n_levels; i++) {
+        const int32_t x = s->level_coordinate[i];
+        const double _Complex F = qc__seams_value_at(s, f, x / 2);
+        symbol[qc__level_symbol(s, i)] = x % 2 ? cimag(F) : creal(F);
     }
 }
 

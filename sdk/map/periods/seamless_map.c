@@ -1,6 +1,7 @@
 /* The Hodge step: from a matched cross field to a locally integrable field and its integral on the
  * cut surface (thesis 4.1; 2007 paper, section 4, eq. (9)). */
 #include <math.h>
+#include "sdk/map/periods/frame_form.h"
 #include "sdk/map/periods/wrong_cones.h"
 #include <qc/map.h>
 #include <string.h>
@@ -16,23 +17,6 @@ static void seamless_map_destroy(qc_object *object) {
     qc__free((void *)(uintptr_t)map->f);
     qc__free((void *)(uintptr_t)map->weight);
     qc__free(map);
-}
-
-/* z = conj(x) e / length in each face. */
-static qc_status scaled_form(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
-                             qc_complex *z) {
-    const qc_mesh *mesh = matching->field->mesh;
-    qc_complex *edge = QC__NEW(ctx, qc_complex, 3 * (int64_t)mesh->n_faces);
-    double *scale = QC__NEW(ctx, double, mesh->n_faces);
-    qc_status status = edge && scale ? qc_tangent_edges(ctx, mesh, edge) : QC_ERR_NOMEM;
-    if (status == QC_OK) {
-        for (int32_t t = 0; t < mesh->n_faces; t++)
-            scale[t] = 1.0 / (sizing->length ? sizing->length[t] : sizing->edge_length);
-        status = qc_form_from_cross(ctx, mesh, edge, matching->field->x, scale, z);
-    }
-    qc__free(edge);
-    qc__free(scale);
-    return status;
 }
 
 /* Shortest cut graph with the cones as base vertices (thesis 4.2). */
@@ -88,22 +72,6 @@ static qc_status project(hodge *q) {
     return status;
 }
 
-/* Raises the weight of folded faces, and of those around them half as much (stiffening as in
- * mixed-integer quadrangulation, Bommes, Zimmer, Kobbelt 2009, 5.4). */
-static void stiffen(hodge *q) {
-    for (int32_t t = 0; t < q->mesh->n_faces; t++) {
-        const qc_complex *p = q->f + 3 * (int64_t)t;
-        const double det =
-            (p[1].re - p[0].re) * (p[2].im - p[0].im) - (p[2].re - p[0].re) * (p[1].im - p[0].im);
-        if (det <= 0) q->weight[t] *= 4;
-    }
-    for (int32_t h = 0; h < 3 * q->mesh->n_faces; h++) {
-        const int32_t g = q->mesh->twin[h];
-        if (g >= 0 && q->weight[h / 3] < 0.5 * q->weight[g / 3])
-            q->weight[h / 3] = 0.5 * q->weight[g / 3];
-    }
-}
-
 /* Energy of the difference of two forms. */
 static double half_distance2(const hodge *q, const qc_complex *a, const qc_complex *b) {
     double sum = 0;
@@ -118,7 +86,7 @@ static qc_status solve(hodge *q, const qc_matching *matching, const qc_sizing *s
                        int32_t rounds) {
     qc_status status =
         qc_mesh_geometry(q->ctx, q->mesh, NULL, NULL, q->cotangent, NULL, NULL, NULL);
-    if (status == QC_OK) status = scaled_form(q->ctx, matching, sizing, q->frame);
+    if (status == QC_OK) status = qc__frame_form(q->ctx, matching, sizing, q->frame);
     if (status == QC_OK) status = cut_at_cones(q->ctx, matching, &q->cover, q->cut);
     if (status == QC_OK)
         status = qc_cover_comb(q->ctx, &q->cover, q->cut, q->face_turn, NULL, NULL);
@@ -126,7 +94,7 @@ static qc_status solve(hodge *q, const qc_matching *matching, const qc_sizing *s
     for (int32_t i = 0; i <= rounds && status == QC_OK; i++) {
         if (i > 0) {
             if (qc__wrong_cones(q->mesh, q->index4, q->f) == 0) break;
-            stiffen(q);
+            qc__stiffen(q->mesh, q->f, q->weight);
         }
         const qc__range outer =
             qc__range_begin(q->ctx, NULL, i / (rounds + 1.0), (i + 1) / (rounds + 1.0));

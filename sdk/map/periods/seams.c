@@ -1,15 +1,35 @@
 /* Segments, cones and wedges of a cut surface (see seams.h). */
-#include "sdk/map/periods/seams.h"
+#include "sdk/map/periods/features.h"
 #include <string.h>
 
 void qc__seams_free(qc__seams *s) {
     if (!s) return;
-    void *const blocks[] = {
-        s->edge_segment,    s->edge_left,      s->segment_turn, s->segment_node, s->cone_vertex,
-        s->vertex_cone,     s->cone_turn,      s->vertex_wedge, s->corner_wedge, s->wedge_turn,
-        s->wedge_start,     s->term_segment,   s->term_turn,    s->node_vertex,  s->closing_start,
-        s->closing_segment, s->closing_turn,   s->vertex_given, s->given_start,  s->given_symbol,
-        s->given_value,     s->fixed_component};
+    void *const blocks[] = {s->edge_segment,
+                            s->edge_left,
+                            s->segment_turn,
+                            s->segment_node,
+                            s->cone_vertex,
+                            s->vertex_cone,
+                            s->cone_turn,
+                            s->vertex_wedge,
+                            s->corner_wedge,
+                            s->wedge_turn,
+                            s->wedge_start,
+                            s->term_segment,
+                            s->term_turn,
+                            s->node_vertex,
+                            s->closing_start,
+                            s->closing_segment,
+                            s->closing_turn,
+                            s->vertex_given,
+                            s->given_start,
+                            s->given_symbol,
+                            s->given_value,
+                            s->fixed_component,
+                            s->level_coordinate,
+                            s->level_relation_start,
+                            s->level_relation_symbol,
+                            s->level_relation_value};
     qc__rows_free(&s->symbol_row);
     qc__rows_free(&s->free_row);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
@@ -35,26 +55,31 @@ static bool is_node(const builder *b, int32_t v) {
                                 qc_vertex_on_boundary(b->cover->mesh, v));
 }
 
-static qc_status find_cones(builder *b, const int32_t *index4) {
+static qc_status number_points(builder *b, const uint8_t *point) {
     const qc_mesh *mesh = b->cover->mesh;
     qc__seams *s = b->s;
-    int8_t *shift = QC__NEW(b->ctx, int8_t, mesh->n_vertices);
-    qc_status status = shift ? qc_cover_shifts(b->ctx, b->cover, shift) : QC_ERR_NOMEM;
     s->vertex_cone = QC__NEW(b->ctx, int32_t, mesh->n_vertices);
-    if (status == QC_OK && !s->vertex_cone) status = QC_ERR_NOMEM;
-    if (status == QC_OK) {
-        for (int32_t v = 0; v < mesh->n_vertices; v++) {
-            const bool cone = !qc_vertex_on_boundary(mesh, v) && (shift[v] != 0 || index4[v] != 0);
-            s->vertex_cone[v] = cone ? s->n_cones++ : -1;
-        }
-        s->cone_vertex = QC__NEW(b->ctx, int32_t, s->n_cones);
-        s->cone_turn = QC__ZERO(b->ctx, int8_t, s->n_cones);
-        if (!s->cone_vertex || !s->cone_turn) status = QC_ERR_NOMEM;
-    }
-    if (status == QC_OK)
-        for (int32_t v = 0; v < mesh->n_vertices; v++)
-            if (s->vertex_cone[v] >= 0) s->cone_vertex[s->vertex_cone[v]] = v;
+    if (!s->vertex_cone) return QC_ERR_NOMEM;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) s->vertex_cone[v] = point[v] ? s->n_cones++ : -1;
+    s->cone_vertex = QC__NEW(b->ctx, int32_t, s->n_cones);
+    s->cone_turn = QC__ZERO(b->ctx, int8_t, s->n_cones);
+    if (!s->cone_vertex || !s->cone_turn) return QC_ERR_NOMEM;
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (s->vertex_cone[v] >= 0) s->cone_vertex[s->vertex_cone[v]] = v;
+    return QC_OK;
+}
+
+static qc_status find_points(builder *b, const int32_t *index4, const qc__features *features) {
+    const qc_mesh *mesh = b->cover->mesh;
+    int8_t *shift = QC__NEW(b->ctx, int8_t, mesh->n_vertices);
+    uint8_t *point = QC__NEW(b->ctx, uint8_t, mesh->n_vertices);
+    qc_status status = shift && point ? qc_cover_shifts(b->ctx, b->cover, shift) : QC_ERR_NOMEM;
+    if (status == QC_OK) status = qc__feature_corners(b->ctx, features, point);
+    for (int32_t v = 0; v < mesh->n_vertices && status == QC_OK; v++)
+        point[v] |= !qc_vertex_on_boundary(mesh, v) && (shift[v] != 0 || index4[v] != 0);
+    if (status == QC_OK) status = number_points(b, point);
     qc__free(shift);
+    qc__free(point);
     return status;
 }
 
@@ -257,38 +282,19 @@ static qc_status make_wedges(builder *b) {
     return status;
 }
 
-/* Cones are given by their positions. */
-static qc_status give_positions(builder *b) {
-    const qc_mesh *mesh = b->cover->mesh;
-    qc__seams *s = b->s;
-    s->n_given = s->n_cones;
-    s->vertex_given = QC__NEW(b->ctx, int32_t, mesh->n_vertices);
-    s->given_start = QC__NEW(b->ctx, int64_t, 2 * (int64_t)s->n_given + 1);
-    s->given_symbol = QC__NEW(b->ctx, int32_t, 2 * (int64_t)s->n_given);
-    s->given_value = QC__NEW(b->ctx, int8_t, 2 * (int64_t)s->n_given);
-    if (!s->vertex_given || !s->given_start || !s->given_symbol || !s->given_value)
-        return QC_ERR_NOMEM;
-    memcpy(s->vertex_given, s->vertex_cone, sizeof(int32_t) * (size_t)mesh->n_vertices);
-    for (int32_t i = 0; i < 2 * s->n_given; i++) {
-        s->given_start[i] = i;
-        s->given_symbol[i] = qc__position_symbol(s, i / 2, i % 2);
-        s->given_value[i] = 1;
-    }
-    s->given_start[2 * s->n_given] = 2 * (int64_t)s->n_given;
-    return QC_OK;
-}
-
 qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cut,
-                           const int8_t *face_turn, const int32_t *index4, qc__seams **out) {
+                           const int8_t *face_turn, const int32_t *index4, const int8_t *axis,
+                           qc__seams **out) {
     qc__seams *s = QC__ZERO(ctx, qc__seams, 1);
     if (!s) return QC_ERR_NOMEM;
     s->mesh = cover->mesh;
+    const qc__features features = {cover, face_turn, axis};
     builder b = {ctx, cover, cut, face_turn, NULL, s};
-    qc_status status = find_cones(&b, index4);
+    qc_status status = find_points(&b, index4, &features);
     if (status == QC_OK) status = count_degrees(&b);
     if (status == QC_OK) status = trace_segments(&b);
     if (status == QC_OK) status = make_wedges(&b);
-    if (status == QC_OK) status = give_positions(&b);
+    if (status == QC_OK) status = qc__seams_find_given(ctx, s, &features);
     qc__free(b.degree);
     if (status != QC_OK) {
         qc__seams_free(s);

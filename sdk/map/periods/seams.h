@@ -8,10 +8,11 @@
  * between two cut edges form a wedge; all have one value. With F_v the value in the first wedge of
  * v, f'_w = i^{a_w} F_v + sum of i^{b} tau_k.
  *
- * Some coordinates of some F_v are no unknowns: those of cones are integers. The translations and
- * these positions, real and imaginary parts apart, are the symbols. They satisfy integer relations;
- * solving them (relations.h) leaves the free variables y, which are the periods to be rounded:
- * (4.1) counts them. */
+ * Some coordinates of some F_v are no unknowns. Points (cones, and the corners and ends of hard
+ * features) lie on lattice points, and the coordinate across a feature has one value, the level, on
+ * the whole chain. The translations and positions, real and imaginary parts apart, and the levels
+ * are the symbols. They satisfy integer relations; solving them (relations.h) leaves the free
+ * variables y, which are the periods to be rounded: (4.1) counts them. */
 #ifndef QC_MAP_SEAMS_H
 #define QC_MAP_SEAMS_H
 
@@ -28,11 +29,18 @@ typedef struct qc__seams {
     int32_t *edge_left; /* n_edges, the halfedge on the left side, along the segment              */
     int8_t *segment_turn;  /* rho_k  */
     int32_t *segment_node; /* 2 n_segments: start and end vertex */
-    /* cones: interior vertices of non-zero index */
+    /* points: cones, interior vertices of non-zero index, and corners of features */
     int32_t n_cones;
     int32_t *cone_vertex; /* n_cones */
     int32_t *vertex_cone; /* n_vertices, -1 */
-    int8_t *cone_turn; /* R: quarter turns once around, 0..3                                      */
+    int8_t *cone_turn;    /* R: quarter turns once around, 0..3; 0 on the boundary */
+    /* levels: one coordinate x = 2 v + c (c = 0 re, 1 im of F_v) of each, and relations between
+     * them and the other symbols, sum value * symbol = 0 */
+    int32_t n_levels;
+    int32_t *level_coordinate;
+    int32_t n_level_relations;
+    int64_t *level_relation_start;
+    int32_t *level_relation_symbol, *level_relation_value;
     /* wedges, ordered by vertex and counter-clockwise */
     int32_t n_wedges;
     int32_t *vertex_wedge; /* n_vertices + 1 */
@@ -55,7 +63,7 @@ typedef struct qc__seams {
     int32_t *vertex_given; /* n_vertices, -1 */
     int64_t *given_start;  /* 2 n_given + 1 */
     int32_t *given_symbol;
-    int8_t *given_value;
+    int32_t *given_value;
     /* symbols by free variables, and back; made by qc__seams_solve */
     int32_t n_free, n_fixed;  /* the n_fixed ones after the free ones are set to zero by a shift */
     int32_t *fixed_component; /* n_fixed */
@@ -63,9 +71,13 @@ typedef struct qc__seams {
     qc__rows free_row;        /* n_free + n_fixed: y = sum of value * symbol */
 } qc__seams;
 
-/* Real symbols: parts re, im of the translations, then of the positions of the cones. */
+/* Real symbols: parts re, im of the translations, then of the positions of the points, then the
+ * levels. */
 static inline int32_t qc__seams_symbols(const qc__seams *s) {
-    return 2 * (s->n_segments + s->n_cones);
+    return 2 * (s->n_segments + s->n_cones) + s->n_levels;
+}
+static inline int32_t qc__level_symbol(const qc__seams *s, int32_t level) {
+    return 2 * (s->n_segments + s->n_cones) + level;
 }
 static inline int32_t qc__translation_symbol(int32_t segment, int32_t part) {
     return 2 * segment + part;
@@ -114,9 +126,17 @@ double _Complex qc__seams_value_at(const qc__seams *s, const qc_complex *f, int3
  * (n_free). Errors: NOMEM. */
 qc_status qc__seams_read(qc_ctx *ctx, const qc__seams *s, qc_complex *f, double *y);
 
-/* Segments, cones and wedges of a cut, combed cover. index4: n_vertices. */
+/* Coordinate c of F_v in the part `part` (0 re, 1 im) of i^turn F_v: c = (part + turn) mod 2, with
+ * this sign. */
+static inline double qc__part_sign(int32_t part, int32_t turn) {
+    return ((turn + (part == 0)) & 3) >= 2 ? -1.0 : 1.0;
+}
+
+/* Segments, points, wedges and levels of a cut, combed cover. index4: n_vertices; axis: n_edges,
+ * the features as in qc_matching, NULL = none. */
 qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cut,
-                           const int8_t *face_turn, const int32_t *index4, qc__seams **out);
+                           const int8_t *face_turn, const int32_t *index4, const int8_t *axis,
+                           qc__seams **out);
 /* Expresses every symbol by free variables on the lattice QC_LATTICE_...; errors: NOMEM, FAILED. */
 qc_status qc__seams_solve(qc_ctx *ctx, qc__seams *seams, int32_t lattice);
 void qc__seams_free(qc__seams *seams);

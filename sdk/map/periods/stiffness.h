@@ -29,9 +29,4 @@ void qc__map_stiffness_free(qc__map_stiffness *stiffness);
 qc_status qc__map_stiffness_solve(qc_ctx *ctx, const qc__map_stiffness *stiffness, int32_t nrhs,
                                   double *x);
 
-/* Coordinate c of F_v in the part `part` of i^turn F_v: (part + turn) mod 2, with this sign. */
-static inline double qc__part_sign(int32_t part, int32_t turn) {
-    return ((turn + (part == 0)) & 3) >= 2 ? -1.0 : 1.0;
-}
-
 #endif

@@ -1,4 +1,4 @@
-/* Winding of the images of cones. */
+/* Winding of the images of cones, and stiffening. */
 #include "sdk/map/periods/wrong_cones.h"
 #include <math.h>
 
@@ -31,4 +31,13 @@ int32_t qc__wrong_cones(const qc_mesh *mesh, const int32_t *index4, const qc_com
             wrong += lround(image_angle(mesh, f, v) / quarter) > 4;
     }
     return wrong;
+}
+
+void qc__stiffen(const qc_mesh *mesh, const qc_complex *f, double *weight) {
+    for (int32_t t = 0; t < mesh->n_faces; t++)
+        if (is_folded(f + 3 * (int64_t)t)) weight[t] *= 4;
+    for (int32_t h = 0; h < 3 * mesh->n_faces; h++) {
+        const int32_t g = mesh->twin[h];
+        if (g >= 0 && weight[h / 3] < 0.5 * weight[g / 3]) weight[h / 3] = 0.5 * weight[g / 3];
+    }
 }

@@ -14,8 +14,8 @@ static double *period_matrix(qc_ctx *ctx, const qc_seamless_map *map, int32_t *n
     qc__seams *seams = NULL;
     qc__periods *periods = NULL;
     bench_check(ctx, qc_mesh_geometry(ctx, mesh, NULL, NULL, cotangent, NULL, NULL, NULL));
-    bench_check(ctx,
-                qc__seams_create(ctx, &cover, map->cut, map->face_turn, matching->index4, &seams));
+    bench_check(ctx, qc__seams_create(ctx, &cover, map->cut, map->face_turn, matching->index4,
+                                      matching->axis, &seams));
     bench_check(ctx, qc__seams_solve(ctx, seams, QC_LATTICE_QUADS));
     bench_check(ctx, qc__periods_create(ctx, seams, cotangent, NULL, &periods));
     *n = seams->n_free;

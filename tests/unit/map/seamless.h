@@ -165,7 +165,7 @@ static inline void setting_free(setting *s) {
 static inline qc__seams *setting_seams(const setting *s, int32_t lattice) {
     qc__seams *seams = NULL;
     must(s->ctx, qc__seams_create(s->ctx, &s->cover, s->map->cut, s->map->face_turn,
-                                  s->matching->index4, &seams));
+                                  s->matching->index4, s->matching->axis, &seams));
     must(s->ctx, qc__seams_solve(s->ctx, seams, lattice));
     return seams;
 }
@@ -217,7 +217,7 @@ static inline qc_complex *harmonic_map(qc_ctx *ctx, const qc__periods *p, const 
     qc_complex *f = ARRAY(qc_complex, 3 * (int64_t)s->mesh->n_faces);
     qc__seams_symbol_values(s, y, symbol);
     qc__seams_wedge_values(s, symbol, wedge);
-    must(ctx, qc__periods_extend(ctx, p, wedge, F));
+    must(ctx, qc__periods_extend(ctx, p, wedge, NULL, F));
     qc__periods_corners(s, wedge, F, f);
     free(symbol);
     free(wedge);
