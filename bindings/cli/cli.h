@@ -91,7 +91,7 @@ typedef struct cli_common {
          1e9,                                                                                      \
          NULL,                                                                                     \
          "SECONDS",                                                                                \
-         "give up after this time; 0 = never (default)"},                                          \
+         "aim at this time: improve less; 0 = none (default)"},                                          \
     {                                                                                              \
         "progress", 0, CLI_CHOICE, &(c).progress, 0, 0, cli_progress_names, "auto|plain|none",     \
             "auto: one line on a terminal; plain: lines; none"                                     \

@@ -27,24 +27,31 @@ double cli_seconds(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+/* Steps end early to meet the limit; a run which is so much later than that is given up. */
+static double latest(const cli_session *s) {
+    return 1.5 * s->time_limit;
+}
+
 static void show(cli_session *s, const char *stage, double fraction) {
     const double now = cli_seconds();
     const bool new_stage = strcmp(stage, s->last_stage) != 0;
     if (now - s->last_time < (s->progress == CLI_PROGRESS_PLAIN ? 1.0 : 0.1) && !new_stage) return;
     s->last_time = now;
     snprintf(s->last_stage, sizeof s->last_stage, "%s", stage);
+    const char *detail = qc_ctx_progress_detail(s->ctx);
     if (s->progress == CLI_PROGRESS_PLAIN) {
-        fprintf(stderr, "quadcover: %3.0f %% %s\n", 100 * fraction, stage);
+        fprintf(stderr, "quadcover: %3.0f %% %s%s%s\n", 100 * fraction, stage, *detail ? ": " : "",
+                detail);
         return;
     }
-    fprintf(stderr, "\r\033[K%3.0f %% %s", 100 * fraction, stage);
+    fprintf(stderr, "\r\033[K%3.0f %% %s%s%s", 100 * fraction, stage, *detail ? ": " : "", detail);
     s->line_open = true;
 }
 
 static bool on_progress(void *user, const char *stage, double fraction) {
     cli_session *s = user;
     if (s->progress != CLI_PROGRESS_NONE) show(s, stage, fraction);
-    if (s->time_limit > 0 && cli_seconds() - s->start > s->time_limit) s->out_of_time = true;
+    if (s->time_limit > 0 && cli_seconds() - s->start > latest(s)) s->out_of_time = true;
     return !interrupted && !s->out_of_time;
 }
 
@@ -91,7 +98,9 @@ int cli_session_open(cli_session *session, const cli_common *common) {
     options.log = on_log;
     options.user = session;
     const qc_status status = qc_ctx_create(&options, &session->ctx);
-    return status == QC_OK ? EXIT_DONE : cli_error(EXIT_FAILED, "%s", qc_status_name(status));
+    if (status != QC_OK) return cli_error(EXIT_FAILED, "%s", qc_status_name(status));
+    if (session->time_limit > 0) qc_ctx_set_time_budget(session->ctx, session->time_limit);
+    return EXIT_DONE;
 }
 
 void cli_session_close(cli_session *session) {

@@ -44,6 +44,7 @@ qc_status qc_ctx_create(const qc_ctx_options *options, qc_ctx **out) {
     ctx->threads = o.threads == 0 ? online_cores() : o.threads > 256 ? 256 : o.threads;
     ctx->range = (qc__range){0.0, 1.0, "", 0};
     atomic_init(&ctx->cancelled, false);
+    qc_ctx_set_time_budget(ctx, -1);
     qc__clear_error(ctx);
     *out = ctx;
     return QC_OK;
@@ -142,6 +143,17 @@ bool qc__progress(qc_ctx *ctx, double fraction) {
     return false;
 }
 
+void qc__detail(qc_ctx *ctx, const char *format, ...) {
+    va_list args;
+    va_start(args, format);
+    vsnprintf(ctx->detail, sizeof ctx->detail, format, args);
+    va_end(args);
+}
+
+const char *qc_ctx_progress_detail(const qc_ctx *ctx) {
+    return ctx->detail;
+}
+
 bool qc_ctx_progress(qc_ctx *ctx, double fraction) {
     return qc__progress(ctx, fraction);
 }
@@ -156,6 +168,7 @@ qc__range qc__range_begin(qc_ctx *ctx, const char *stage, double lo, double hi) 
     ctx->range = (qc__range){outer.lo + lo * width, outer.lo + hi * width,
                              stage ? stage : outer.stage, outer.depth + 1};
     if (outer.depth == 0) ctx->furthest = ctx->range.lo;
+    if (stage) ctx->detail[0] = '\0';
     return outer;
 }
 

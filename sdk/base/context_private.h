@@ -19,6 +19,8 @@ struct qc_ctx {
     qc__range range;
     double furthest; /* fraction reported within the outermost range: a bar never runs back */
     atomic_bool cancelled;
+    qc__time time;
+    char detail[128];
 
     qc_error error;
     char stage_text[64], error_text[512];

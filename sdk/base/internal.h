@@ -68,6 +68,29 @@ typedef struct qc__range {
 qc__range qc__range_begin(qc_ctx *ctx, const char *stage, double lo, double hi);
 void qc__range_end(qc_ctx *ctx, qc__range outer);
 
+/* What the step under way has to say beside its fraction, until the next step begins. */
+void qc__detail(qc_ctx *ctx, const char *format, ...) QC__PRINTF(2, 3);
+
+/* --- time budget ------------------------------------------------------------------------------ */
+
+typedef struct qc__time {
+    double end, step_end; /* of the budget, of what the step under way may use; INFINITY = none  */
+    double start, fixed;  /* of the step; seconds of those before which never asked              */
+    bool asked, late;     /* the step asked whether it is late; it was                           */
+} qc__time;
+/* Asked by loops which improve a valid result, before each improvement: true when the time of the
+ * step is over; they then end as if nothing were left to improve. The first time a warning says so.
+ * Calling thread only. */
+bool qc__out_of_time(qc_ctx *ctx);
+/* Seconds which the step may still use; INFINITY without a budget. */
+double qc__time_left(const qc_ctx *ctx);
+/* Around a step of a pipeline. */
+qc__time qc__time_begin_step(qc_ctx *ctx);
+void qc__time_end_step(qc_ctx *ctx, qc__time outer);
+/* Around a part of the work, such as a component, which may use that share of what is left. */
+qc__time qc__time_share(qc_ctx *ctx, double share);
+void qc__time_end_share(qc_ctx *ctx, qc__time outer);
+
 /* --- threads ---------------------------------------------------------------------------------- */
 
 /* Calls body(arg, begin, end, worker) for [0,n) in chunks of `chunk`, on up to qc_ctx_threads

@@ -7,12 +7,15 @@
 
 /* Vertices visited around a branch point and edges of a path, at most. */
 enum { BALL = 3000, PATH_MAX_EDGES = 40 };
+/* A pair which cost so many times its price is not measured again. */
+static const double DEAR = 2;
 
 typedef struct pair {
     int32_t p, q; /* the index of p is moved to q */
     int32_t n;
     int64_t start; /* flips start .. start + n - 1 */
     double change; /* of E_D */
+    double price;  /* what the pair may cost */
 } pair;
 
 typedef struct search {
@@ -37,6 +40,17 @@ static bool pair_is_known(const search *s, int32_t p, int32_t q) {
     return false;
 }
 
+static double distance(const qc_mesh *mesh, int32_t p, int32_t q) {
+    double d[3];
+    qc__sub(mesh->position + 3 * (size_t)p, mesh->position + 3 * (size_t)q, d);
+    return sqrt(qc__dot(d, d));
+}
+
+static double price(const search *s, int32_t p, int32_t q) {
+    const double far = s->options.increase, near = s->options.most;
+    return near > far && distance(s->d->mesh, p, q) < s->options.spacing ? near : far;
+}
+
 /* One flip for each edge on the way back from q to p: index a leaves p and arrives at q. */
 static bool add_pair(qc_ctx *ctx, search *s, int32_t p, int32_t q) {
     const qc_mesh *mesh = s->d->mesh;
@@ -44,7 +58,7 @@ static bool add_pair(qc_ctx *ctx, search *s, int32_t p, int32_t q) {
     if (!qc__reserve(ctx, (void **)&s->pair, &s->pair_capacity, s->n_pairs + 1, sizeof *s->pair) ||
         !qc__reserve(ctx, (void **)&s->flip, &s->flip_capacity, s->n_flips + n, sizeof *s->flip))
         return false;
-    const pair new = {p, q, n, s->n_flips, 0};
+    const pair new = {p, q, n, s->n_flips, s->options.increase, price(s, p, q)};
     for (int32_t v = q; v != p;) {
         const int32_t h = s->parent[v], e = mesh->halfedge_edge[h];
         const int32_t u = qc_halfedge_start(mesh, h); /* h runs from u to v */
@@ -91,10 +105,41 @@ static qc_status find_pairs(qc_ctx *ctx, search *s, int32_t p) {
     return status;
 }
 
+static int by_points(const void *a, const void *b) {
+    const qc__known_pair *x = a, *y = b;
+    return x->p != y->p ? (x->p < y->p ? -1 : 1) : (x->q > y->q) - (x->q < y->q);
+}
+
+/* Other pairs change what a pair costs only little (thesis 6.4): one that was far too dear is not
+ * measured again until the price has come near. */
+static bool still_dear(const search *s, pair *a) {
+    const qc__known_pair key = {a->p, a->q, 0};
+    const qc__known_pair *known =
+        s->d->n_known > 0 ? bsearch(&key, s->d->known, (size_t)s->d->n_known, sizeof key, by_points)
+                          : NULL;
+    if (!known || !(known->change > DEAR * a->price)) return false;
+    a->change = known->change;
+    return true;
+}
+
+static qc_status remember(qc_ctx *ctx, const search *s) {
+    qc__known_pair *known = QC__NEW(ctx, qc__known_pair, s->n_pairs);
+    if (!known) return QC_ERR_NOMEM;
+    for (int64_t i = 0; i < s->n_pairs; i++)
+        known[i] = (qc__known_pair){s->pair[i].p, s->pair[i].q, s->pair[i].change};
+    qsort(known, (size_t)s->n_pairs, sizeof *known, by_points);
+    qc__free(s->d->known);
+    s->d->known = known;
+    s->d->n_known = s->n_pairs;
+    return QC_OK;
+}
+
+/* Out of time, only those which go at any price are left to be tried. */
 static qc_status measure(qc_ctx *ctx, search *s) {
-    for (int64_t i = 0; i < s->n_pairs; i++) {
+    for (int64_t i = 0; i < s->n_pairs && !qc__out_of_time(ctx); i++) {
         pair *a = &s->pair[i];
         double energy = 0;
+        if (still_dear(s, a)) continue;
         const qc_status status =
             qc_distortion_change(ctx, s->d, a->n, s->flip + a->start, -1, &energy, NULL);
         if (status) return status;
@@ -104,34 +149,25 @@ static qc_status measure(qc_ctx *ctx, search *s) {
     return QC_OK;
 }
 
-static double distance(const qc_mesh *mesh, int32_t p, int32_t q) {
-    double d[3];
-    qc__sub(mesh->position + 3 * (size_t)p, mesh->position + 3 * (size_t)q, d);
-    return sqrt(qc__dot(d, d));
-}
-
-/* What the pair may cost. */
-static double price(const search *s, const pair *a) {
-    const double far = s->options.increase, near = s->options.most;
-    return near > far && distance(s->d->mesh, a->p, a->q) < s->options.spacing ? near : far;
-}
-
-static int by_change(const void *a, const void *b) {
+static int by_loss(const void *a, const void *b) {
     const pair *x = a, *y = b;
-    if (x->change != y->change) return x->change < y->change ? -1 : 1;
+    const double loss = x->change - x->price, other = y->change - y->price;
+    if (loss != other) return loss < other ? -1 : 1;
     return x->p != y->p ? (x->p < y->p ? -1 : 1) : x->q - y->q;
 }
 
 static qc_status cancel(qc_ctx *ctx, search *s, int32_t *cancelled) {
     if (s->n_pairs == 0) return QC_OK;
-    qsort(s->pair, (size_t)s->n_pairs, sizeof *s->pair, by_change);
-    for (int64_t i = 0; i < s->n_pairs; i++) {
+    qsort(s->pair, (size_t)s->n_pairs, sizeof *s->pair, by_loss);
+    const int64_t most = s->options.pairs > 0 ? s->options.pairs : s->n_pairs;
+    for (int64_t i = 0; i < s->n_pairs && *cancelled < most; i++) {
         const pair *a = &s->pair[i];
         const int32_t *index4 = s->d->index4, sign_p = sign(index4[a->p]);
-        if (!(a->change < price(s, a)) || sign_p * sign(index4[a->q]) >= 0) continue;
+        if (a->price <= s->options.increase && qc__out_of_time(ctx)) continue;
+        if (!(a->change < a->price) || sign_p * sign(index4[a->q]) >= 0) continue;
         bool accepted = false;
         const qc_status status = qc_distortion_change(ctx, s->d, a->n, s->flip + a->start,
-                                                      s->d->energy + price(s, a), NULL, &accepted);
+                                                      s->d->energy + a->price, NULL, &accepted);
         if (status) return status;
         *cancelled += accepted;
         if (!qc__progress(ctx, 0.8 + 0.2 * (double)i / (double)s->n_pairs)) return QC_ERR_CANCELLED;
@@ -146,6 +182,7 @@ static qc_status run(qc_ctx *ctx, search *s, int32_t *cancelled) {
     for (int32_t p = 0; !status && p < mesh->n_vertices; p++)
         if (s->d->index4[p] != 0) status = find_pairs(ctx, s, p);
     if (!status) status = measure(ctx, s);
+    if (!status && s->n_pairs > 0) status = remember(ctx, s);
     return status ? status : cancel(ctx, s, cancelled);
 }
 

@@ -144,9 +144,9 @@ qc_status qc_distortion_create(qc_ctx *ctx, const qc_matching *matching, const q
 
 void qc_distortion_free(qc_distortion *d) {
     if (!d) return;
-    void *const blocks[] = {d->cotangent, d->side,  d->m,      d->index4, d->bend,
-                            d->alpha,     d->x,     d->angle,  d->turned, d->r,
-                            d->curl,      d->reach, d->sparse, d->frozen, d->hard};
+    void *const blocks[] = {d->cotangent, d->side,   d->m,      d->index4, d->bend, d->alpha,
+                            d->x,         d->angle,  d->turned, d->r,      d->curl, d->reach,
+                            d->sparse,    d->frozen, d->hard,   d->known};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     qc__smoother_free(&d->smoother);
     qc_stiffness_free(d->matrix);

@@ -16,6 +16,12 @@ typedef struct qc__side {
 /* Flips evaluated at a time: right-hand sides which share a pass over the factors. */
 enum { QC__TRIALS = 8 };
 
+/* What cancelling a pair did to E_D when it was measured last. */
+typedef struct qc__known_pair {
+    int32_t p, q;
+    double change;
+} qc__known_pair;
+
 struct qc_distortion {
     const qc_matching *start; /* retained */
     const qc_mesh *mesh;
@@ -37,6 +43,8 @@ struct qc_distortion {
     double energy, whole;
     int32_t branch_points;
     int64_t evaluations, changes, updates; /* updates: flips in the factor                      */
+    qc__known_pair *known; /* of the last call of qc_distortion_cancel, sorted by p, then q */
+    int64_t n_known;
     double *angle;      /* n_faces QC__TRIALS: work space of trials                             */
     qc_complex *curl;   /* n QC__TRIALS                                                         */
     qc_complex *turned; /* n_faces QC__TRIALS                                                   */

@@ -137,16 +137,15 @@ static qc_status round_of_trials(qc_ctx *ctx, qc__search *s, bool *applied, bool
     return status;
 }
 
-/* One line a second. */
-static void log_state(qc_ctx *ctx, qc__search *s) {
+/* The state beside the progress, ten times a second. */
+static void show_state(qc_ctx *ctx, qc__search *s) {
     const double now = qc__now(), passed = now - s->start, part = used(s);
-    if (now - s->logged < 1) return;
-    s->logged = now;
-    qc__log(ctx, QC_LOG_INFO,
-            "E_D %.3f %%, %d branch points, %.0f evaluations/s, at most %.0f s more",
-            100 * s->d->energy / s->d->whole, (int)s->d->branch_points,
-            (double)(s->d->evaluations - s->first) / passed,
-            part > 0 ? passed * fmax(1 - part, 0) / part : 0);
+    if (now - s->shown < 0.1) return;
+    s->shown = now;
+    const double left = part > 0 ? passed * fmax(1 - part, 0) / part : 0;
+    qc__detail(ctx, "E_D %.3f %%, %d branch points, %.0f evaluations/s, at most %.0f s more",
+               100 * s->d->energy / s->d->whole, (int)s->d->branch_points,
+               (double)(s->d->evaluations - s->first) / passed, fmin(left, qc__time_left(ctx)));
 }
 
 /* Until the budget or the patience is at an end, or nothing is left to try. */
@@ -156,7 +155,7 @@ static qc_status run(qc_ctx *ctx, qc__search *s) {
     s->bulk = BULK;
     s->failures = 0;
     memset(s->tried, 0, (size_t)s->d->mesh->n_edges);
-    while (!status && s->failures < s->options.patience && used(s) < 1) {
+    while (!status && s->failures < s->options.patience && used(s) < 1 && !qc__out_of_time(ctx)) {
         status = round_of_trials(ctx, s, &applied, &ended);
         any |= applied;
         if (ended && !any) break;
@@ -164,7 +163,7 @@ static qc_status run(qc_ctx *ctx, qc__search *s) {
             memset(s->tried, 0, (size_t)s->d->mesh->n_edges);
             any = false;
         }
-        log_state(ctx, s);
+        show_state(ctx, s);
         if (!status && !qc__progress(ctx, fmin(used(s), 1))) status = QC_ERR_CANCELLED;
     }
     return status;
@@ -196,7 +195,6 @@ qc_status qc_distortion_reduce(qc_ctx *ctx, qc_distortion *d, const qc_reduce_op
                     .first = d->evaluations,
                     .start = qc__now(),
                     .weight = {1.2e-4, 1e-4}};
-    s.logged = s.start;
     if (options)
         memcpy(&s.options, options,
                options->struct_size < sizeof s.options ? options->struct_size : sizeof s.options);

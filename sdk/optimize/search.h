@@ -25,9 +25,9 @@ typedef struct qc__search {
     double *slope;         /* n_faces */
     double weight[2];      /* sums of (change - first) self and of self^2 over the trials */
     int32_t bulk;
-    int64_t first;        /* evaluations at the start */
-    double start, logged; /* times: of the start, of the last line of the log */
-    int64_t failures;     /* in a row */
+    int64_t first;       /* evaluations at the start */
+    double start, shown; /* times: of the start, of the last progress shown */
+    int64_t failures;    /* in a row */
 } qc__search;
 
 /* Order of qsort: the larger rank first, then by edge and step. */

@@ -146,7 +146,9 @@ qc_status qc_pipeline_run_range(qc_pipeline *pipeline, uint32_t first, uint32_t 
     for (uint32_t s = first; s < last && status == QC_OK; s++) {
         const qc__range outer = qc__range_begin(ctx, pipeline->step[s].name, share * (s - first),
                                                 share * (s - first + 1));
+        const qc__time time = qc__time_begin_step(ctx);
         status = run_step(&scope, s, held);
+        qc__time_end_step(ctx, time);
         qc__range_end(ctx, outer);
     }
     if (status == QC_OK) status = qc__bag_absorb(io, held);

@@ -103,7 +103,11 @@ static qc_status run_components(job *j) {
                             WHOLE + (1 - WHOLE) * j->parts.face_start[c + 1] / faces);
         if (shared)
             status = qc__density_share(j->pipeline, &density, j->parts.mesh, j->parts.area[c]);
+        const double left = faces - j->parts.face_start[c];
+        const double part = j->parts.face_start[c + 1] - j->parts.face_start[c];
+        const qc__time time = qc__time_share(j->ctx, part / left);
         if (status == QC_OK) status = run_component(j, c);
+        qc__time_end_share(j->ctx, time);
         qc__range_end(j->ctx, outer);
         if (!is_local(status) || j->options->strict || n == 1) continue;
         keep(j->ctx, status, &first);

@@ -27,7 +27,7 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.spacing = p->spacing * qc__quad_length(r);
     options.most = s.whole;
     status = qc_distortion_cancel(r->ctx, d, &options, NULL);
-    return qc__optimize_end(r, status, d);
+    return qc__optimize_end(r, status, d, NULL);
 }
 
 const qc_stage qc_stage_optimize_cancel = {

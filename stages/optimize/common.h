@@ -2,6 +2,7 @@
 #ifndef QC_STAGES_OPTIMIZE_COMMON_H
 #define QC_STAGES_OPTIMIZE_COMMON_H
 
+#include <qc/map.h>
 #include <qc/optimize.h>
 #include <qc/stages.h>
 
@@ -21,8 +22,13 @@
 
 /* The distortion at the input matching. */
 qc_status qc__optimize_begin(const qc_run *run, double lambda, qc_distortion **out);
-/* Publishes its state, logs what changed, frees it. status: of the work done in between. */
-qc_status qc__optimize_end(const qc_run *run, qc_status status, qc_distortion *distortion);
+/* Publishes `chosen`, or the present state when that is NULL; logs what changed, frees both.
+ * status: of the work done in between. */
+qc_status qc__optimize_end(const qc_run *run, qc_status status, qc_distortion *distortion,
+                           qc_matching *chosen);
+/* (E_D + E_H) / (1/2 |X|^2) of the map which the matching leads to at the density of the run:
+ * curl removed, periods rounded. Infinity where there is none. */
+qc_status qc__error_sum(const qc_run *run, const qc_matching *matching, double *sum);
 /* Lengths in quads as lengths of the mesh. */
 double qc__quad_length(const qc_run *run);
 

@@ -37,7 +37,7 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.patience = p->patience;
     options.seconds = p->seconds;
     status = qc_distortion_reduce(r->ctx, d, &options);
-    return qc__optimize_end(r, status, d);
+    return qc__optimize_end(r, status, d, NULL);
 }
 
 const qc_stage qc_stage_optimize_curl = {

@@ -109,6 +109,18 @@ QC_API qc_status qc_ctx_fail(qc_ctx *ctx, qc_status status, int64_t where, const
 /* Reports the fraction done of the call under way; false: clean up and return QC_ERR_CANCELLED,
  * which is recorded. */
 QC_API bool qc_ctx_progress(qc_ctx *ctx, double fraction);
+/* What the step under way says about itself, such as "E_D 0.93 %, 64 branch points, ..."; "" when
+ * nothing. Borrowed, for use within the progress callback. */
+QC_API const char *qc_ctx_progress_detail(const qc_ctx *ctx);
+
+/* A time which what follows through ctx aims at, in seconds from now; negative = none (default).
+ * Loops which improve a result that is valid already (the optimisation of branch points, the search
+ * for integers) then end early with what they have, and log a warning; what must be done is done,
+ * however long it takes. 0 = improve nothing. Results then depend on the speed of the machine. */
+QC_API void qc_ctx_set_time_budget(qc_ctx *ctx, double seconds);
+/* For such loops, in stages of others, too: whether the step under way has used up its part. Always
+ * false outside steps of a pipeline. */
+QC_API bool qc_ctx_out_of_time(qc_ctx *ctx);
 
 /* --- objects ---------------------------------------------------------------------------------- */
 

@@ -98,9 +98,10 @@ typedef struct qc_round_options {
     double tolerance;        /* of the number of quads when the sizing asks for one; 0 = 0.02 */
     const qc_solver *solver; /* factorises L; borrowed for the call, NULL = builtin    */
     uint64_t seed;           /* of the lattice search; another one may give other integers */
+    int32_t trial;           /* 1: only the energies are of interest; logs no warnings */
 } qc_round_options;
 #define QC_ROUND_OPTIONS_INIT                                                                      \
-    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02, NULL, 0 }
+    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02, NULL, 0, 0 }
 /* Rounds the periods to a lattice by the period matrix (Sigma trick, 6.3.2) and adds the harmonic
  * map with the missing periods. When the sizing asks for a number of quads the map is rescaled and
  * rounded again until its area meets it. Errors: NOMEM, CANCELLED, FAILED, those of the solver. */

@@ -99,14 +99,16 @@ typedef struct qc_cancel_options {
                            the expected fall of E_H (6.4) in step 4; parameter units               */
     double spacing;     /* pairs nearer than this (units of the mesh) are cancelled at any price
                            below `most`, since rounding could not part them; 0 = none              */
-    double most; /* parameter units                                                         */
+    double most;   /* parameter units                                                         */
+    int64_t pairs; /* at most so many; 0 = any number                                         */
 } qc_cancel_options;
 #define QC_CANCEL_OPTIONS_INIT                                                                     \
-    { sizeof(qc_cancel_options), 3, 0.0, 0.0, 0.0 }
+    { sizeof(qc_cancel_options), 3, 0.0, 0.0, 0.0, 0 }
 
-/* Measures the change of E_D for every pair, then cancels in order of it, each measured again just
- * before. *cancelled (may be NULL) counts the pairs. Deterministic; errors and cancelling as
- * qc_distortion_reduce. */
+/* Measures the change of E_D for every pair, then cancels in order of that change less what the
+ * pair may cost, each measured again just before. *cancelled (may be NULL) counts the pairs.
+ * A later call on the same distortion does not measure again what cost over twice its price.
+ * Deterministic; errors and cancelling as qc_distortion_reduce. */
 QC_API qc_status qc_distortion_cancel(qc_ctx *ctx, qc_distortion *distortion,
                                       const qc_cancel_options *options, int32_t *cancelled);
 

@@ -96,7 +96,7 @@ static qc_status round_periods(rounding *r, qc_lattice_result *result) {
         options.radius = r->options.radius;
         options.budget = search_budget(r);
         options.seed += r->options.seed;
-        if (r->coarse) {
+        if (r->coarse || qc__out_of_time(r->ctx)) {
             options.radius = r->options.radius < 1 ? r->options.radius : 1;
             options.budget = 0;
         }
@@ -211,6 +211,7 @@ static qc_status meet_density(rounding *r) {
         const qc_status status = try_scale(r, scale, wanted, &quads);
         if (status != QC_OK) return status;
         if (!(wanted > 0)) break;
+        if (qc__out_of_time(r->ctx) && r->best_miss <= promised + slack) break;
         const bool sound =
             r->best_collisions == 0 && (r->best_wrong == 0 || i + 1 >= WINDING_ROUNDS);
         if (r->best_miss <= r->options.tolerance + slack && sound) break;
@@ -273,9 +274,10 @@ static qc_status make_period_matrix(rounding *r) {
     const int64_t n = r->seams->n_free;
     if (n == 0) return QC_OK;
     if (n > LARGEST_PERIOD_MATRIX) {
-        qc__log(r->ctx, QC_LOG_WARNING,
-                "%lld periods are too many for a period matrix; they are rounded directly",
-                (long long)n);
+        if (!r->options.trial)
+            qc__log(r->ctx, QC_LOG_WARNING,
+                    "%lld periods are too many for a period matrix; they are rounded directly",
+                    (long long)n);
         return QC_OK;
     }
     r->P = QC__NEW(r->ctx, double, n *n);
@@ -452,7 +454,7 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
     if (status == QC_OK) status = make_period_matrix(&r);
     if (status == QC_OK) status = align(&r);
     if (status == QC_OK) status = meet_density(&r);
-    if (status == QC_OK && r.best_collisions > 0)
+    if (status == QC_OK && r.best_collisions > 0 && !r.options.trial)
         qc__log(ctx, QC_LOG_WARNING, "%d pairs of cones are too close for this density",
                 (int)r.best_collisions);
     if (status == QC_OK) status = publish(&r, out);

@@ -16,6 +16,7 @@ static const struct {
     {"table-6.1", "Table 6.1: time of an evaluation of E_D", thesis_evaluation},
     {"figure-6.1", "Figure 6.1: E_D and branch points over evaluations", thesis_descent},
     {"rounding", "6.3.3: ways to round periods", thesis_rounding},
+    {"figure-6.5", "Figures 6.5 and 6.6: errors over the number of branch points", thesis_balance},
     {"table-7.1", "Table 7.1: regularity of the quads", thesis_regularity},
 };
 enum { PARTS = (int)(sizeof parts / sizeof *parts) };

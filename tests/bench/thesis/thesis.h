@@ -27,6 +27,7 @@ const char *thesis_mesh(const thesis_run *run, const char *name);
 void thesis_evaluation(thesis_run *run); /* Table 6.1: time of an evaluation of E_D              */
 void thesis_descent(thesis_run *run);    /* Figure 6.1: E_D and branch points over evaluations   */
 void thesis_rounding(thesis_run *run);   /* 6.3.3: ways to round                                 */
+void thesis_balance(thesis_run *run);    /* Figures 6.5, 6.6: E_D + E_H over branch points       */
 void thesis_regularity(thesis_run *run); /* Table 7.1: regularity of the quads                   */
 
 /* --- table.c: Markdown tables ----------------------------------------------------------------- */

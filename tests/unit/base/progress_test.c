@@ -82,6 +82,58 @@ static void false_cancels(void **state) {
     qc_ctx_free(ctx);
 }
 
+static void a_step_speaks_for_itself(void **state) {
+    (void)state;
+    watcher w;
+    qc_ctx *ctx = watched(&w);
+    assert_string_equal(qc_ctx_progress_detail(ctx), "");
+    const qc__range outer = qc__range_begin(ctx, "curl", 0, 0.5);
+    qc__detail(ctx, "%d points", 12);
+    assert_string_equal(qc_ctx_progress_detail(ctx), "12 points");
+    qc__range_end(ctx, qc__range_begin(ctx, NULL, 0, 0.5));
+    assert_string_equal(qc_ctx_progress_detail(ctx), "12 points");
+    qc__range_end(ctx, outer);
+    qc__range_begin(ctx, "hodge", 0.5, 1);
+    assert_string_equal(qc_ctx_progress_detail(ctx), "");
+    qc_ctx_free(ctx);
+}
+
+/* Far from either end, so that the speed of the machine does not matter. */
+static void budgets_are_for_steps(void **state) {
+    (void)state;
+    watcher w;
+    qc_ctx *ctx = watched(&w);
+    qc__time outer = qc__time_begin_step(ctx);
+    assert_false(qc__out_of_time(ctx)); /* no budget */
+    assert_true(qc__time_left(ctx) > 1e300);
+    qc__time_end_step(ctx, outer);
+    qc_ctx_set_time_budget(ctx, 1e6);
+    assert_true(qc__time_left(ctx) > 1e300); /* not in a step */
+    outer = qc__time_begin_step(ctx);
+    assert_false(qc__out_of_time(ctx));
+    assert_true(qc__time_left(ctx) > 4e5 && qc__time_left(ctx) <= 5e5);
+    qc__time_end_step(ctx, outer);
+    const qc__time whole = qc__time_share(ctx, 0.1);
+    outer = qc__time_begin_step(ctx);
+    assert_true(qc__time_left(ctx) > 4e4 && qc__time_left(ctx) <= 5e4);
+    qc__time_end_step(ctx, outer);
+    qc__time_end_share(ctx, whole);
+    qc_ctx_set_time_budget(ctx, 0);
+    assert_false(qc__out_of_time(ctx)); /* not in a step */
+    outer = qc__time_begin_step(ctx);
+    assert_true(qc__out_of_time(ctx));
+    assert_string_equal(w.text, "2||ended early for lack of time, with the best so far");
+    w.text[0] = '\0';
+    assert_true(qc__out_of_time(ctx));
+    assert_string_equal(w.text, ""); /* said once */
+    qc__time_end_step(ctx, outer);
+    qc_ctx_set_time_budget(ctx, -1);
+    outer = qc__time_begin_step(ctx);
+    assert_false(qc__out_of_time(ctx));
+    qc__time_end_step(ctx, outer);
+    qc_ctx_free(ctx);
+}
+
 static void errors_are_one_line(void **state) {
     (void)state;
     watcher w;
@@ -160,6 +212,8 @@ int main(void) {
         cmocka_unit_test(ranges_nest),
         cmocka_unit_test(fractions_never_fall_within_the_outermost_range),
         cmocka_unit_test(false_cancels),
+        cmocka_unit_test(a_step_speaks_for_itself),
+        cmocka_unit_test(budgets_are_for_steps),
         cmocka_unit_test(errors_are_one_line),
         cmocka_unit_test(option_structs_of_any_size_are_read),
         cmocka_unit_test(instructions_are_chosen_and_reported),

@@ -81,11 +81,56 @@ static void near_pairs_go(void **state) {
     release(&s);
 }
 
+/* The number of pairs is kept, and those are the cheapest. */
+static void so_many_pairs_go(void **state) {
+    qc_ctx *ctx = *state;
+    double energy[2];
+    for (int i = 0; i < 2; i++) {
+        start s = noisy(ctx);
+        qc_cancel_options options = QC_CANCEL_OPTIONS_INIT;
+        options.increase = 1e6;
+        options.pairs = i == 0 ? 1 : 4;
+        int32_t cancelled = 0;
+        assert_int_equal(qc_distortion_cancel(ctx, s.d, &options, &cancelled), QC_OK);
+        assert_int_equal(cancelled, options.pairs);
+        qc_distortion_state now;
+        qc_distortion_get_state(s.d, &now);
+        assert_true(now.branch_points < s.branch_points);
+        energy[i] = now.energy;
+        assert_true(energy[i] < s.before);
+        check_energy(ctx, s.d, NULL);
+        release(&s);
+    }
+    assert_true(energy[1] < energy[0]);
+}
+
+/* Without time pairs which would go at any price still go, and only those. */
+static void near_pairs_go_without_time(void **state) {
+    qc_ctx *ctx = *state;
+    for (int near = 0; near < 2; near++) {
+        start s = noisy(ctx);
+        qc_cancel_options options = QC_CANCEL_OPTIONS_INIT;
+        options.increase = 1e3;
+        options.spacing = near ? 0.4 : 0;
+        options.most = 1e6;
+        int32_t cancelled = 0;
+        qc_ctx_set_time_budget(ctx, 0);
+        const qc__time time = qc__time_begin_step(ctx);
+        assert_int_equal(qc_distortion_cancel(ctx, s.d, &options, &cancelled), QC_OK);
+        qc__time_end_step(ctx, time);
+        assert_int_equal(cancelled > 0, near);
+        check_energy(ctx, s.d, NULL);
+        release(&s);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(noise_is_cancelled, set_up, tear_down),
         cmocka_unit_test_setup_teardown(price_is_paid, set_up, tear_down),
         cmocka_unit_test_setup_teardown(near_pairs_go, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(so_many_pairs_go, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(near_pairs_go_without_time, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -150,12 +150,36 @@ static void budgets_are_kept(void **state) {
     qc_object_release(mesh);
 }
 
+/* A step without time changes nothing and succeeds. */
+static void no_time_no_change(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *mesh = ellipsoid(ctx, 24, 20, 1, 1.2, 3);
+    qc_matching *m = smooth_matching(ctx, mesh, false);
+    qc_distortion *d = NULL;
+    assert_int_equal(qc_distortion_create(ctx, m, NULL, 1, &d), QC_OK);
+    qc_ctx_set_time_budget(ctx, 0);
+    const qc__time time = qc__time_begin_step(ctx);
+    assert_int_equal(qc_distortion_reduce(ctx, d, NULL), QC_OK);
+    qc__time_end_step(ctx, time);
+    qc_distortion_state s;
+    qc_distortion_get_state(d, &s);
+    assert_int_equal(s.changes, 0);
+    qc_ctx_set_time_budget(ctx, -1);
+    assert_int_equal(qc_distortion_reduce(ctx, d, NULL), QC_OK);
+    qc_distortion_get_state(d, &s);
+    assert_true(s.changes > 0);
+    qc_distortion_free(d);
+    qc_object_release(m);
+    qc_object_release(mesh);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(energy_falls, set_up, tear_down),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(cancelled_state_is_valid),
         cmocka_unit_test_setup_teardown(budgets_are_kept, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(no_time_no_change, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,8 @@
 
 #include <qc/optimize.h>
 
+#include "sdk/base/internal.h"
+
 /* E_D of the present matching by sdk/dec. */
 static inline double from_scratch(qc_ctx *ctx, const qc_distortion *d, const qc_sizing *sizing) {
     qc_matching *m = NULL;
