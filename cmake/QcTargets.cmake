@@ -60,7 +60,8 @@ function(qc_add_library)
   add_library(QuadCover::quadcover ALIAS quadcover_shared)
 endfunction()
 
-# qc_add_test(unit/sparse/updown_test.c [LABELS ...]): one cmocka program, linked to the static twin.
+# qc_add_test(updown_test.c [more.c ...]): one cmocka program of one or more
+# sources, linked to the static twin.
 function(qc_add_test source)
   string(REGEX REPLACE "\\.c$" "" name ${source})
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR}/tests ${CMAKE_CURRENT_SOURCE_DIR})
@@ -68,7 +69,7 @@ function(qc_add_test source)
     set(name ${folder}/${name})
   endif()
   string(REPLACE "/" "_" target ${name})
-  add_executable(${target} ${source})
+  add_executable(${target} ${source} ${ARGN})
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${target} PRIVATE qc_flags quadcover_static ${QC_CMOCKA} m)
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)

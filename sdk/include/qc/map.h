@@ -73,7 +73,7 @@ QC_API qc_status qc_corner_map_create(qc_ctx *ctx, const qc_mesh *mesh, const do
 QC_API qc_status qc_corner_map_set_rotation(qc_ctx *ctx, qc_corner_map *map,
                                             const int8_t *rotation);
 /* Attaches the hard features (n_edges, copied) to a map which is not yet shared. */
-qc_status qc_corner_map_set_axis(qc_ctx *ctx, qc_corner_map *map, const int8_t *axis);
+QC_API qc_status qc_corner_map_set_axis(qc_ctx *ctx, qc_corner_map *map, const int8_t *axis);
 /* Attaches the map before rounding (6 n_faces, copied) to a map which is not yet shared. */
 QC_API qc_status qc_corner_map_set_relaxed(qc_ctx *ctx, qc_corner_map *map, const double *uv);
 /* The map as a polygon mesh with one vt per corner, and back: faces of `soup` must be triangles
@@ -157,9 +157,10 @@ typedef struct qc_untangle_options {
 } qc_untangle_options;
 #define QC_UNTANGLE_OPTIONS_INIT                                                                   \
     { sizeof(qc_untangle_options), 20, 200 }
-/* Moves the parameters, keeping all transitions and lattice points, until every face is positively
- * oriented by the exact test. *out is the best map found, its remaining fold-overs in n_flipped /
- * n_degenerate of a qc_grid_map_create. */
+/* Moves the parameters, keeping all transitions, features and lattice points, until every face is
+ * positively oriented by the exact test or the work reaches a bound in proportion to the mesh. *out
+ * is the best map found, its remaining fold-overs in n_flipped / n_degenerate of a
+ * qc_grid_map_create. */
 QC_API qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map,
                                  const qc_untangle_options *options, qc_corner_map **out);
 

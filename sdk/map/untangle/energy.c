@@ -80,7 +80,8 @@ double qc__face_det(const qc__reduced_map *map, const qc_complex *hat, int32_t t
     return det(du, dv);
 }
 
-double qc__patch_energy(const qc__patch *p, const double *x, double *gradient) {
+double qc__patch_energy(qc__patch *p, const double *x, double *gradient) {
+    p->work += p->n_faces;
     memset(gradient, 0, sizeof *gradient * 2 * (size_t)p->n_vertices);
     double energy = 0;
     for (int32_t i = 0; i < p->n_faces; i++) {

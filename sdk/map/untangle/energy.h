@@ -20,6 +20,8 @@ typedef struct qc__patch {
     const int32_t *face; /* faces with an active vertex                                           */
     const int32_t *local; /* mesh vertex -> j, -1 */
     double eps;
+    int64_t work; /* faces evaluated so far */
+    int64_t work_limit;
 } qc__patch;
 
 /* Target shapes: hat (3 n_faces), area (n_faces). */
@@ -28,8 +30,9 @@ qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_len
 /* det J of face t for the values of the map. */
 double qc__face_det(const qc__reduced_map *map, const qc_complex *hat, int32_t t);
 /* Energy and gradient at x (2 n_vertices). */
-double qc__patch_energy(const qc__patch *patch, const double *x, double *gradient);
-/* Lowers the energy from x until the patch is clean, or no better; x in place. */
+double qc__patch_energy(qc__patch *patch, const double *x, double *gradient);
+/* Lowers the energy from x until the patch is clean, no better, or work_limit is reached; x in
+ * place. */
 qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *patch, const qc_untangle_options *options,
                              double *x);
 /* Smallest det J over the faces of the patch. */

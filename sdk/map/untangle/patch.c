@@ -167,7 +167,7 @@ qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *p, const qc_untangle_option
         polished = least > clean_det;
         waiting = least > best + 1e-3 * fabs(best) || round == 0 ? 0 : waiting + 1;
         if (least > best) best = least;
-        if (waiting > PATIENCE) break;
+        if (waiting > PATIENCE || p->work >= p->work_limit) break;
         p->eps = sqrt(eps_floor * eps_floor + eps_slope * below * below);
         status = qc__lbfgs(ctx, &problem, options->max_iterations, 1e-7, x, NULL, NULL);
     }

@@ -12,6 +12,8 @@
 
 static const double good_det = 1e-4; /* faces below it count as folded           */
 static const double longest_step = 0.125, shortest_step = 0.125 / 8; /* of the continuation */
+/* Evaluations of the whole map, at most, on the way from the relaxed map and at its end. */
+static const int64_t walk_effort = 2000, end_effort = 1500;
 enum {
     GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings */
 };
@@ -44,6 +46,7 @@ typedef struct untangler {
     int32_t *active;   /* n_vertices: of the patch, without the frozen ones                    */
     double *x;         /* 2 n_vertices                                                         */
     qc_complex *saved; /* n_vertices: values of the patch before it was touched                */
+    int64_t work, work_limit; /* faces whose energy was evaluated: so far, at most             */
 } untangler;
 
 /* --- neighbourhoods --------------------------------------------------------------------------- */
@@ -171,9 +174,18 @@ static qc_status minimise(untangler *u) {
         u->x[2 * (int64_t)n + 1] = u->map->value[v].im;
         n++;
     }
-    qc__patch patch = {u->map,    u->hat,  u->area,  n,  u->n_patch_faces,
-                       u->active, u->face, u->local, 0.0};
+    qc__patch patch = {.map = u->map,
+                       .hat = u->hat,
+                       .area = u->area,
+                       .n_vertices = n,
+                       .n_faces = u->n_patch_faces,
+                       .vertex = u->active,
+                       .face = u->face,
+                       .local = u->local,
+                       .work = u->work,
+                       .work_limit = u->work_limit};
     const qc_status status = n > 0 ? qc__patch_minimise(u->ctx, &patch, &u->options, u->x) : QC_OK;
+    u->work = patch.work;
     for (int32_t j = 0; j < n; j++) {
         const int32_t v = u->active[j];
         if (status == QC_OK)
@@ -201,10 +213,14 @@ static qc_status untangle_patch(untangler *u) {
     return status;
 }
 
+static bool exhausted(const untangler *u) {
+    return u->work >= u->work_limit;
+}
+
 /* All patches within `rings` of a bad place; *bad = how many there were. */
 static qc_status untangle_rings(untangler *u, int32_t rings, int32_t *bad) {
     *bad = mark_neighbourhood(u, rings);
-    for (int32_t v = 0; v<u->mesh->n_vertices && * bad> 0; v++) {
+    for (int32_t v = 0; v<u->mesh->n_vertices && * bad> 0 && !exhausted(u); v++) {
         if (u->distance[v] < 0 || qc__pinned(u->map, v)) continue;
         collect_patch(u, v);
         const qc_status status = untangle_patch(u);
@@ -415,7 +431,7 @@ static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
     qc_status status = untangle_growing(u, GROWTHS, 0.0, 0.1, &bad);
     double at = 0, step = longest_step;
     bool stuck = false;
-    while (at < 1 && status == QC_OK) {
+    while (at < 1 && status == QC_OK && !exhausted(u)) {
         const double to = at + step < 1 ? at + step : 1;
         memcpy(stable, u->map->value, size);
         advance(u, relaxed, drift, at, to);
@@ -430,6 +446,7 @@ static qc_status walk_from_relaxed(untangler *u, const qc__reduced_map *relaxed,
         at = to;
         if (2 * step <= longest_step) step *= 2;
     }
+    if (at < 1) advance(u, relaxed, drift, at, 1);
     return status;
 }
 
@@ -463,7 +480,9 @@ qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map, const qc_untang
     status = prepare(&u, map, before);
     int32_t bad = 0;
     if (status == QC_OK) bad = mark_neighbourhood(&u, 0);
+    u.work_limit = walk_effort * map->mesh->n_faces;
     if (status == QC_OK && bad > 0 && map->relaxed) status = continue_from(&u, map, before);
+    u.work_limit = u.work + end_effort * map->mesh->n_faces;
     if (status == QC_OK && bad > 0) status = untangle_growing(&u, GROWTHS, 0.8, 1.0, &bad);
     if (status == QC_OK) status = exact_result(&u, map, before, out);
     qc_object_release(before);

@@ -1,7 +1,9 @@
-/* Maps whose boundary lies on isolines, and the marking of features: cylinders, fans of squares. */
+/* Maps whose boundary lies on isolines, and the marking of features: cylinders, fans of squares;
+ * and maps with their vertices thrown about. */
 #ifndef QC_TESTS_ALIGNED_H
 #define QC_TESTS_ALIGNED_H
 
+#include "sdk/map/untangle/reduced_map.h"
 #include "unit/map/maps.h"
 
 /* k x k squares on a cylinder of circumference and height given in quads. */
@@ -127,6 +129,34 @@ static inline qc_corner_map *maps_finish_aligned(qc_ctx *ctx, maps_list *l, doub
     qc_object_release(mesh);
     maps_list_free(l);
     return map;
+}
+
+/* Every vertex thrown by up to `far` in the coordinates which its features leave free. */
+static inline qc_corner_map *maps_thrown(qc_ctx *ctx, const qc_corner_map *map, double far,
+                                         maps_rng *r) {
+    qc_grid_map *g = NULL;
+    qc__reduced_map *m = NULL;
+    qc_corner_map *out = NULL;
+    double *uv = malloc(6 * sizeof *uv * (size_t)map->mesh->n_faces);
+    maps_ok(ctx, qc_grid_map_create(ctx, map, 0, &g));
+    maps_ok(ctx, qc__reduced_map_create(ctx, g, map->uv, true, &m));
+    for (int32_t v = 0; v < map->mesh->n_vertices; v++) {
+        const qc_complex to = {m->value[v].re + far * maps_uniform(r),
+                               m->value[v].im + far * maps_uniform(r)};
+        m->value[v] = qc__keep_fixed(m, v, to);
+    }
+    for (int64_t c = 0; c < 3 * (int64_t)map->mesh->n_faces; c++) {
+        const qc_complex f = qc__reduced_map_corner(m, m->value[map->mesh->face_vertex[c]], c);
+        uv[2 * c] = f.re;
+        uv[2 * c + 1] = f.im;
+    }
+    maps_ok(ctx, qc_corner_map_create(ctx, map->mesh, uv, map->edge_length, NULL, &out));
+    maps_ok(ctx, qc_corner_map_set_rotation(ctx, out, g->rotation));
+    if (g->axis) maps_ok(ctx, qc_corner_map_set_axis(ctx, out, g->axis));
+    qc__reduced_map_free(m);
+    qc_object_release(g);
+    free(uv);
+    return out;
 }
 
 #endif

@@ -1,5 +1,4 @@
 /* Untangling with features: vertices slide along their isolines, corners and cones stay. */
-#include "sdk/map/untangle/reduced_map.h"
 #include "unit/map/aligned.h"
 
 static qc_corner_map *surface(qc_ctx *ctx, int which, maps_rng *r) {
@@ -21,33 +20,6 @@ static qc_corner_map *surface(qc_ctx *ctx, int which, maps_rng *r) {
     }
 }
 enum { N_SURFACES = 9 };
-
-/* Every vertex thrown by up to `far` in the coordinates which its features leave free. */
-static qc_corner_map *thrown(qc_ctx *ctx, const qc_corner_map *map, double far, maps_rng *r) {
-    qc_grid_map *g = NULL;
-    qc__reduced_map *m = NULL;
-    qc_corner_map *out = NULL;
-    double *uv = malloc(6 * sizeof *uv * (size_t)map->mesh->n_faces);
-    maps_ok(ctx, qc_grid_map_create(ctx, map, 0, &g));
-    maps_ok(ctx, qc__reduced_map_create(ctx, g, map->uv, true, &m));
-    for (int32_t v = 0; v < map->mesh->n_vertices; v++) {
-        const qc_complex to = {m->value[v].re + far * maps_uniform(r),
-                               m->value[v].im + far * maps_uniform(r)};
-        m->value[v] = qc__keep_fixed(m, v, to);
-    }
-    for (int64_t c = 0; c < 3 * (int64_t)map->mesh->n_faces; c++) {
-        const qc_complex f = qc__reduced_map_corner(m, m->value[map->mesh->face_vertex[c]], c);
-        uv[2 * c] = f.re;
-        uv[2 * c + 1] = f.im;
-    }
-    maps_ok(ctx, qc_corner_map_create(ctx, map->mesh, uv, map->edge_length, NULL, &out));
-    maps_ok(ctx, qc_corner_map_set_rotation(ctx, out, g->rotation));
-    maps_ok(ctx, qc_corner_map_set_axis(ctx, out, g->axis));
-    qc__reduced_map_free(m);
-    qc_object_release(g);
-    free(uv);
-    return out;
-}
 
 /* Transitions, features and everything pinned are as before. */
 static void assert_same_frame(qc_ctx *ctx, const qc_grid_map *a, const qc_grid_map *b) {
@@ -86,7 +58,7 @@ static void thrown_maps_are_untangled_along_features(void **state) {
         for (uint64_t seed = 1; seed <= 4; seed++) {
             maps_rng r = {seed};
             qc_corner_map *map = surface(ctx, which, &r), *out = NULL;
-            qc_corner_map *bad = thrown(ctx, map, 2.0, &r);
+            qc_corner_map *bad = maps_thrown(ctx, map, 2.0, &r);
             qc_grid_map *start = NULL, *before = NULL, *after = NULL;
             qc_polygon_mesh *q = NULL;
             maps_ok(ctx, qc_grid_map_create(ctx, map, 0, &start));
