@@ -103,45 +103,57 @@ static double ahead(const qc__curves *c, const hit *a, const hit *b) {
     return c->closed[a->curve] ? d - length * floor(d / length + 0.5) : d;
 }
 
-/* Feature edges of the quads from v forward and backward along its curve. */
-static void count_edges(const qc__relaxation *r, int32_t v, const hit *at, int n[2]) {
-    n[0] = n[1] = 0;
-    for (int32_t i = r->around.face_start[v]; i < r->around.face_start[v + 1]; i++) {
-        const int32_t c = r->around.face[i];
-        const int32_t w = r->quads->face_vertex[(c & ~3) + ((c + 1) & 3)];
-        const double chord =
-            sqrt(distance2(r->position + 3 * (int64_t)v, r->position + 3 * (int64_t)w));
-        const double d = ahead(&r->curves, &at[v], &at[w]);
-        if (fabs(d) <= CHORD * chord) n[d < 0]++;
-    }
+/* Counts the edge from v to w when it is along the curve of v: n[2 v] of them run forward, n[2 v + 1]
+ * backward. known: the quads tell that it is on a feature, which else the length of the piece
+ * between its ends does. */
+static void count_edge(const qc__relaxation *r, const hit *at, int32_t v, int32_t w, bool known,
+                       uint8_t *n) {
+    if (at[v].curve < 0) return;
+    const double chord =
+        sqrt(distance2(r->position + 3 * (int64_t)v, r->position + 3 * (int64_t)w));
+    const double d = ahead(&r->curves, &at[v], &at[w]);
+    if (isfinite(d) && (known || fabs(d) <= CHORD * chord) && n[2 * v + (d < 0)] < 2)
+        n[2 * v + (d < 0)]++;
 }
 
-static int32_t anchor(const qc__relaxation *r, int32_t v, const hit *at, bool inside) {
-    if (at[v].corner >= 0) return QC__FIXED;
-    if (!inside) return at[v].curve >= 0 && at[v].boundary ? at[v].curve : QC__FIXED;
-    if (at[v].curve < 0) return QC__FREE;
-    int n[2];
-    count_edges(r, v, at, n);
-    if (n[0] + n[1] == 0) return QC__FREE;
-    return n[0] == 1 && n[1] == 1 ? at[v].curve : QC__FIXED;
+static void count_edges(const qc__relaxation *r, const hit *at, uint8_t *n) {
+    const qc_polygon_mesh *q = r->quads;
+    for (int32_t i = 0; i < q->n_lines; i++) {
+        const int32_t *end = q->line + 2 * (int64_t)i;
+        count_edge(r, at, end[0], end[1], true, n);
+        count_edge(r, at, end[1], end[0], true, n);
+    }
+    for (int32_t c = 0; q->n_lines == 0 && c < q->n_corners; c++)
+        count_edge(r, at, q->face_vertex[c], q->face_vertex[(c & ~3) + ((c + 1) & 3)], false, n);
+}
+
+/* n: edges along the curve, forward and backward. */
+static int32_t anchor(const hit *at, const uint8_t n[2], bool inside) {
+    if (at->corner >= 0) return QC__FIXED;
+    if (!inside) return at->curve >= 0 && at->boundary ? at->curve : QC__FIXED;
+    if (at->curve < 0 || n[0] + n[1] == 0) return QC__FREE;
+    return n[0] == 1 && n[1] == 1 ? at->curve : QC__FIXED;
 }
 
 qc_status qc__find_anchors(qc_ctx *ctx, qc__relaxation *r) {
     const int32_t n = r->quads->n_vertices;
     hit *at = QC__NEW(ctx, hit, n);
     uint8_t *inside = QC__NEW(ctx, uint8_t, n);
-    const qc_status status = at && inside ? QC_OK : QC_ERR_NOMEM;
+    uint8_t *along = QC__ZERO(ctx, uint8_t, 2 * (int64_t)n);
+    const qc_status status = at && inside && along ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         for (int32_t v = 0; v < n; v++) {
             inside[v] = is_inside(r, v);
             at[v] = locate(r, v, !inside[v]);
         }
+        count_edges(r, at, along);
         for (int32_t v = 0; v < n; v++) {
-            r->anchor[v] = anchor(r, v, at, inside[v]);
+            r->anchor[v] = anchor(&at[v], along + 2 * (int64_t)v, inside[v]);
             r->spot[v].arc = at[v].arc;
         }
     }
     qc__free(at);
     qc__free(inside);
+    qc__free(along);
     return status;
 }

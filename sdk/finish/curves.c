@@ -150,6 +150,11 @@ static int32_t place_of(const qc__curves *c, int32_t i, double s) {
     return low;
 }
 
+int32_t qc__curve_edge(const qc__curves *c, int32_t i, double s) {
+    const int32_t h = c->halfedge[place_of(c, i, s)];
+    return c->mesh->halfedge_edge[h < 0 ? ~h : h];
+}
+
 double qc__curve_point(const qc__curves *c, int32_t i, double s, int32_t *face, double weight[3],
                        double tangent[3]) {
     const double length = c->length[i];

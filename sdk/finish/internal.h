@@ -45,6 +45,8 @@ qc_status qc__curves_create(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *fea
 void qc__curves_clear(qc__curves *curves);
 /* Mesh vertex at the beginning (end = 0) or end (1) of an open curve. */
 int32_t qc__curve_end(const qc__curves *curves, int32_t c, int end);
+/* Mesh edge at arc length s of curve c. */
+int32_t qc__curve_edge(const qc__curves *curves, int32_t c, double s);
 /* The point at arc length s: face, barycentric coordinates there, unit tangent (may be NULL). s is
  * clamped to the curve, or taken modulo its length when it is closed; the value used is returned.
  */

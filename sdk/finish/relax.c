@@ -156,6 +156,16 @@ static qc_status run(qc_ctx *ctx, int32_t rounds, qc__relaxation *r) {
     return status;
 }
 
+/* Lines whose first vertex slides begin on another edge of the surface. */
+static void set_source_edges(const qc__relaxation *r, qc_polygon_mesh *q) {
+    for (int32_t i = 0; q->source_edge && r->quads->source_edge && i < q->n_lines; i++) {
+        const int32_t v = q->line[2 * (int64_t)i];
+        q->source_edge[i] = r->anchor[v] < 0
+                                ? r->quads->source_edge[i]
+                                : qc__curve_edge(&r->curves, r->anchor[v], r->spot[v].arc);
+    }
+}
+
 /* The same quads at the new places. */
 static qc_status publish(qc_ctx *ctx, const qc__relaxation *r, qc_polygon_mesh **out) {
     const int64_t n = r->quads->n_vertices;
@@ -168,6 +178,7 @@ static qc_status publish(qc_ctx *ctx, const qc__relaxation *r, qc_polygon_mesh *
         qc_object_release(q);
         return QC_ERR_NOMEM;
     }
+    set_source_edges(r, q);
     memcpy(q->position, r->position, (size_t)(3 * n) * sizeof *q->position);
     for (int64_t v = 0; v < n; v++) {
         q->source_face[v] = r->spot[v].face;

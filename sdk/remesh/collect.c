@@ -54,8 +54,14 @@ static qc_status field_on(qc_ctx *ctx, const qc_mesh *mesh, const qc_bag *bag,
 qc_status qc__collection_add(qc_ctx *ctx, qc__collection *all, int32_t c, const qc_mesh *mesh,
                              const qc_bag *before, const qc_bag *bag) {
     const qc_corner_map *map = qc_bag_latest(bag, QC_TYPE_CORNER_MAP);
+    qc_polygon_mesh *quads = made(before, bag, QC_TYPE_POLYGON_MESH);
+    const qc_status kept = quads ? qc__check_promises(ctx, mesh, quads) : QC_OK;
+    if (kept != QC_OK) {
+        qc_object_release(quads);
+        return kept;
+    }
     all->mesh[c] = qc_object_retain(map ? map->mesh : mesh);
-    all->quads[c] = made(before, bag, QC_TYPE_POLYGON_MESH);
+    all->quads[c] = quads;
     all->report[c] = made(before, bag, QC_TYPE_REPORT);
     const qc_status status = field_on(ctx, mesh, bag, &all->field[c]);
     return status == QC_OK && map ? qc_corner_map_to_polygons(ctx, map, &all->uv[c]) : status;

@@ -66,8 +66,9 @@ typedef struct qc_remesh_result {
  * name "input"), then the others once per connected component, in order. A target number of quads
  * is shared by area, a relative edge length is made absolute once (parameters of the steps of stage
  * qc.size). A component that fails becomes a warning which names it, the stage and the reason,
- * unless strict or unless all fail. Errors: those of the stages (qc_error.stage = the step);
- * CANCELLED. */
+ * unless strict or unless all fail; so does one whose quads are not a manifold of quads with its
+ * number of boundary loops and its Euler characteristic. Errors: those of the stages
+ * (qc_error.stage = the step); FAILED for such quads; CANCELLED. */
 QC_API qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_mesh *input,
                            const qc_remesh_options *options, qc_remesh_result *result);
 /* Releases all members and zeroes the struct. NULL is fine. */
