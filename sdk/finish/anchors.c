@@ -103,8 +103,8 @@ static double ahead(const qc__curves *c, const hit *a, const hit *b) {
     return c->closed[a->curve] ? d - length * floor(d / length + 0.5) : d;
 }
 
-/* Counts the edge from v to w when it is along the curve of v: n[2 v] of them run forward, n[2 v + 1]
- * backward. known: the quads tell that it is on a feature, which else the length of the piece
+/* Counts the edge from v to w when it is along the curve of v: n[2 v] of them run forward, n[2 v +
+ * 1] backward. known: the quads tell that it is on a feature, which else the length of the piece
  * between its ends does. */
 static void count_edge(const qc__relaxation *r, const hit *at, int32_t v, int32_t w, bool known,
                        uint8_t *n) {

@@ -66,6 +66,13 @@ static inline void qc__halfedge_vector(const qc_mesh *m, int32_t h, double out[3
     for (int i = 0; i < 3; i++) out[i] = q[i] - p[i];
 }
 
+/* --- polygon meshes (polygon_mesh.c) */
+
+/* Names the groups 1..n of a mesh which is not yet shared; texts are copied, materials may be NULL.
+ */
+qc_status qc__polygon_name_groups(qc_ctx *ctx, qc_polygon_mesh *mesh, int32_t n,
+                                  const char *const *name, const char *materials);
+
 /* --- polygon quality (polygon_quality.c) */
 
 /* Smallest sine of a corner angle against the normal of the polygon with the given n vertices: 1

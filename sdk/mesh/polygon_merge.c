@@ -20,6 +20,8 @@ static sizes add_up(int32_t n, const qc_polygon_mesh *const *parts) {
         s.lines += p->n_lines;
         if (p->face_line) s.flags |= QC_POLYGON_FACE_LINE;
         if (p->face_group) s.flags |= QC_POLYGON_FACE_GROUP;
+        if (p->colour) s.flags |= QC_POLYGON_COLOUR;
+        if (p->quality) s.flags |= QC_POLYGON_QUALITY;
         if (p->source_face) s.flags |= QC_POLYGON_SOURCE;
     }
     return s;
@@ -60,6 +62,9 @@ static void append(qc_polygon_mesh *out, const qc_polygon_mesh *p, const int32_t
     if (p->n_lines > 0) copy_ints(out->line + 2 * (size_t)line, p->line, 2 * p->n_lines, vertex);
     if (p->face_line) copy_ints(out->face_line + face, p->face_line, p->n_faces, 0);
     if (p->face_group) copy_ints(out->face_group + face, p->face_group, p->n_faces, 0);
+    if (p->colour)
+        copy_doubles(out->colour + 3 * (size_t)vertex, p->colour, 3 * (size_t)p->n_vertices);
+    if (p->quality) copy_doubles(out->quality + vertex, p->quality, (size_t)p->n_vertices);
     if (out->source_face) copy_source(out, p, map, vertex);
     for (int32_t i = 0; out->source_edge && i < p->n_lines; i++) out->source_edge[line + i] = -1;
 }
@@ -85,6 +90,14 @@ qc_status qc_polygon_mesh_merge(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *c
         at.uvs += part.uvs;
         at.lines += part.lines;
     }
-    *out = merged;
-    return QC_OK;
+    for (int32_t i = 0; i < n && status == QC_OK && !merged->group_name; i++)
+        if (parts[i]->group_name)
+            status = qc__polygon_name_groups(ctx, merged, parts[i]->n_groups,
+                                             (const char *const *)parts[i]->group_name,
+                                             parts[i]->materials);
+    if (status == QC_OK)
+        *out = merged;
+    else
+        qc_object_release(merged);
+    return status;
 }

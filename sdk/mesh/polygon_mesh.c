@@ -1,4 +1,6 @@
 /* Storage of polygon meshes. */
+#include <string.h>
+
 #include "sdk/mesh/internal.h"
 
 static void polygon_mesh_destroy(qc_object *object) {
@@ -13,6 +15,10 @@ static void polygon_mesh_destroy(qc_object *object) {
     qc__free(p->face_group);
     qc__free(p->source_face);
     qc__free(p->source_barycentric);
+    qc__free(p->colour);
+    qc__free(p->quality);
+    qc__free(p->group_name);
+    qc__free(p->materials);
     qc__free(p->source_edge);
     qc__free(p);
 }
@@ -34,7 +40,35 @@ static bool allocate(qc_ctx *ctx, qc_polygon_mesh *p, uint32_t flags) {
         ok = ok && (p->source_barycentric = QC__ZERO(ctx, double, 3 * vertices));
         if (p->n_lines > 0) ok = ok && (p->source_edge = QC__ZERO(ctx, int32_t, p->n_lines));
     }
+    if (flags & QC_POLYGON_COLOUR) ok = ok && (p->colour = QC__ZERO(ctx, double, 3 * vertices));
+    if (flags & QC_POLYGON_QUALITY) ok = ok && (p->quality = QC__ZERO(ctx, double, vertices));
     return ok;
+}
+
+/* One block: the pointers, then the texts. */
+qc_status qc__polygon_name_groups(qc_ctx *ctx, qc_polygon_mesh *p, int32_t n,
+                                  const char *const *name, const char *materials) {
+    size_t size = (size_t)n * sizeof(char *);
+    for (int32_t i = 0; i < n; i++) size += strlen(name[i]) + 1;
+    char **names = qc__malloc(ctx, size, 1);
+    char *copy = materials ? QC__NEW(ctx, char, strlen(materials) + 1) : NULL;
+    if (!names || (materials && !copy)) {
+        qc__free(names);
+        qc__free(copy);
+        return QC_ERR_NOMEM;
+    }
+    char *to = (char *)(names + n);
+    for (int32_t i = 0; i < n; i++) {
+        names[i] = strcpy(to, name[i]);
+        to += strlen(name[i]) + 1;
+    }
+    if (copy) strcpy(copy, materials);
+    qc__free(p->group_name);
+    qc__free(p->materials);
+    p->n_groups = n;
+    p->group_name = names;
+    p->materials = copy;
+    return QC_OK;
 }
 
 qc_status qc_polygon_mesh_create(qc_ctx *ctx, int32_t n_vertices, int32_t n_faces,

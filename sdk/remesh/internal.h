@@ -46,7 +46,8 @@ qc_status qc__set_seed(qc_pipeline *pipeline, const char *step, uint64_t seed);
  * other integers, a few times; each time a warning tells why. */
 qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t first, qc_bag *bag);
 
-/* Fails where the quads of a component are not a manifold of quads with the topology of its mesh. */
+/* Fails where the quads of a component are not a manifold of quads with the topology of its mesh.
+ */
 qc_status qc__check_promises(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh *quads);
 
 /* --- results --------------------------------------------------------------------------------- */

@@ -1,6 +1,8 @@
 /* qc_remesh: a pipeline run once on the input and then once per connected component. */
 #include <string.h>
 
+#include <qc/finish.h>
+
 #include "sdk/remesh/internal.h"
 
 /* Share of the progress bar for the steps on the whole input. */
@@ -136,6 +138,18 @@ static qc_status run_whole(job *j, const qc_polygon_mesh *input) {
     return qc__parts_create(j->ctx, mesh, &j->parts);
 }
 
+/* Gives the quads the colours, groups and uvs of the input. */
+static qc_status keep_attributes(job *j, const qc_polygon_mesh *input) {
+    qc_polygon_mesh *quads = NULL;
+    if (!j->result->quads || (!input->colour && !input->face_group && !input->uv)) return QC_OK;
+    const qc_status status =
+        qc_quads_transfer(j->ctx, input, j->parts.mesh, j->result->quads, &quads);
+    if (status != QC_OK) return status;
+    qc_object_release(j->result->quads);
+    j->result->quads = quads;
+    return QC_OK;
+}
+
 static qc_status run_job(job *j, const qc_polygon_mesh *input) {
     qc_status status = qc_bag_create(j->ctx, &j->whole);
     if (status == QC_OK) status = run_whole(j, input);
@@ -144,6 +158,7 @@ static qc_status run_job(job *j, const qc_polygon_mesh *input) {
         status = run_components(j);
         if (status == QC_OK) status = qc__collection_merge(j->ctx, &j->all, &j->parts, j->result);
         qc__collection_clear(&j->all, j->parts.n);
+        if (status == QC_OK) status = keep_attributes(j, input);
     }
     qc__parts_clear(&j->parts);
     qc_bag_free(j->whole);

@@ -79,9 +79,9 @@ static void spoilt_quads_are_no_result(void **state) {
     assert_int_equal(qc_registry_create(ctx, &registry), QC_OK);
     assert_int_equal(qc_registry_add(registry, &stage), QC_OK);
     assert_int_equal(qc_default_pipeline(ctx, registry, &o, &pipeline), QC_OK);
-    assert_int_equal(qc_pipeline_insert(pipeline, qc_pipeline_count(pipeline) - 1, "spoil",
-                                        "org.test.spoil"),
-                     QC_OK);
+    assert_int_equal(
+        qc_pipeline_insert(pipeline, qc_pipeline_count(pipeline) - 1, "spoil", "org.test.spoil"),
+        QC_OK);
     qc_polygon_mesh *input = sphere(ctx);
     for (int how = 0; ways[how]; how++) {
         qc_remesh_result result = {0};

@@ -37,17 +37,29 @@ typedef struct qc_polygon_mesh {
     int32_t *line;      /* optional, 2 n_lines: OBJ `l` segments as vertex pairs; of quads made from
                            a map: the edges which lie on its features                             */
     int32_t *face_line; /* optional, n_faces: line (text) or 1-based element in the file          */
-    int32_t *face_group;  /* optional, n_faces: OBJ g/usemtl number, 0 = none        */
+    int32_t *face_group;  /* optional, n_faces: number of its OBJ o, g and usemtl, 0 = none */
     int32_t *source_face; /* optional, n_vertices: face of the mesh it was made from ...       */
     double *source_barycentric; /* ... and 3 n_vertices barycentric coordinates in it */
     int32_t *source_edge; /* optional, n_lines: edge of that mesh where line[2 i] or its other end
                              begins; -1 = not known, as in a union                              */
+    double *colour;       /* optional, 3 n_vertices: red, green, blue, 0..1 */
+    double *quality;      /* optional, n_vertices: the PLY property `quality`, a painted density  */
+    int32_t n_groups;     /* group_name[i] belongs to face_group i + 1 */
+    char **group_name;    /* optional, n_groups: the OBJ statements which select it, one a line:
+                             "g wheel\nusemtl rubber" */
+    char *materials;      /* optional: the OBJ statement "mtllib ..." */
 } qc_polygon_mesh;
 
 /* Allocates zeroed arrays for the given sizes (n_uvs > 0 also makes corner_uv, SOURCE with
  * n_lines > 0 source_edge; flags add optional arrays). The caller fills them before publishing,
  * owns *out, frees with qc_object_release. */
-enum { QC_POLYGON_FACE_LINE = 1, QC_POLYGON_FACE_GROUP = 2, QC_POLYGON_SOURCE = 4 };
+enum {
+    QC_POLYGON_FACE_LINE = 1,
+    QC_POLYGON_FACE_GROUP = 2,
+    QC_POLYGON_SOURCE = 4,
+    QC_POLYGON_COLOUR = 8,
+    QC_POLYGON_QUALITY = 16
+};
 QC_API qc_status qc_polygon_mesh_create(qc_ctx *ctx, int32_t n_vertices, int32_t n_faces,
                                         int32_t n_corners, int32_t n_uvs, int32_t n_lines,
                                         uint32_t flags, qc_polygon_mesh **out);
@@ -66,7 +78,8 @@ QC_API qc_status qc_polygon_mesh_write(qc_ctx *ctx, const qc_polygon_mesh *mesh,
                                        const char *comment);
 /* Disjoint union of n meshes. Source faces of mesh i are mapped through source_map[i] (source_map
  * or an entry of it NULL = no change). An optional array exists in the result when some part has
- * it; elsewhere it says "none" (-1 for uvs and source faces, 0 for lines and groups). */
+ * it; elsewhere it says "none" (-1 for uvs and source faces, 0 for the others). Groups keep their
+ * numbers; their names are those of the first part which has any. */
 QC_API qc_status qc_polygon_mesh_merge(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *const *parts,
                                        const int32_t *const *source_map, qc_polygon_mesh **out);
 

@@ -68,12 +68,23 @@ typedef struct qc__soup {
     int64_t n_position, n_uv, n_corner, n_corner_uv, n_line, n_face; /* in array entries */
     int64_t c_position, c_uv, c_corner, c_corner_uv, c_line, c_face_begin, c_face_line,
         c_face_group;
+    double *colour, *quality; /* 3 and 1 a vertex, as far as vertices have them */
+    int64_t n_colour, n_quality, c_colour, c_quality;
+    char *group_name; /* texts one after the other, each with its NUL, of groups 1, 2, ... */
+    int64_t n_group_name, c_group_name;
+    int32_t n_groups;
+    char *materials; /* or NULL */
     bool has_groups;
     bool binary; /* face_line holds element numbers, not lines */
 } qc__soup;
 
 void qc__soup_free(qc__soup *s);
 bool qc__soup_vertex(qc__soup *s, const double xyz[3]);
+/* Colour and quality of the last vertex; those of earlier vertices without one are 0. */
+bool qc__soup_colour(qc__soup *s, const double rgb[3]);
+bool qc__soup_quality(qc__soup *s, double quality);
+/* The text of the next group. */
+bool qc__soup_group(qc__soup *s, const char *text, size_t n);
 bool qc__soup_uv(qc__soup *s, double u, double v);
 /* A face is opened, then gets corners. vertex and uv are 0-based, uv = -1: none. */
 bool qc__soup_face(qc__soup *s, int64_t line, int32_t group);

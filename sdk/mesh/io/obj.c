@@ -1,15 +1,25 @@
-/* Wavefront OBJ: v, vt, f, l, and g/o/usemtl as group numbers; everything else is skipped. */
+/* Wavefront OBJ: v with colours, vt, f, l, mtllib, and o, g and usemtl as numbered groups;
+ * everything else is skipped. */
 #include "internal.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Names of groups, numbered from 1 in the order of appearance: an open hash over the text. */
+/* Groups: what o, g and usemtl said last, numbered from 1 in the order in which faces meet them. An
+ * open hash over the text of all three. */
 typedef struct group_names {
-    const char **name;
-    size_t *length;
-    int32_t *slot; /* hash table of numbers, 0 = empty */
-    int64_t n, c_name, c_length;
+    struct {
+        const char *p;
+        size_t n;
+    } said[3];  /* statements o, g and usemtl in force */
+    bool fresh; /* they have changed since `number` was found */
+    int32_t number;
+    char *text; /* buffer */
+    int64_t c_text;
+    qc__soup *soup; /* keeps the texts */
+    int64_t *name;  /* place of the text in soup->group_name */
+    int32_t *slot;  /* hash table of numbers, 0 = empty */
+    int64_t n, c_name;
     size_t n_slots; /* a power of two, or 0 */
 } group_names;
 
@@ -22,8 +32,8 @@ static size_t hash_text(const char *p, size_t n) {
 static size_t group_slot(const group_names *g, const char *p, size_t n) {
     size_t i = hash_text(p, n) & (g->n_slots - 1);
     for (; g->slot[i]; i = (i + 1) & (g->n_slots - 1)) {
-        int32_t k = g->slot[i] - 1;
-        if (g->length[k] == n && memcmp(g->name[k], p, n) == 0) break;
+        const char *known = g->soup->group_name + g->name[g->slot[i] - 1];
+        if (strncmp(known, p, n) == 0 && known[n] == 0) break;
     }
     return i;
 }
@@ -35,26 +45,45 @@ static bool group_grow(qc_ctx *ctx, group_names *g) {
     qc__free(g->slot);
     g->slot = slot;
     g->n_slots = n_slots;
-    for (int32_t k = 0; k < g->n; k++) slot[group_slot(g, g->name[k], g->length[k])] = k + 1;
+    for (int32_t k = 0; k < g->n; k++) {
+        const char *known = g->soup->group_name + g->name[k];
+        slot[group_slot(g, known, strlen(known))] = k + 1;
+    }
     return true;
 }
 
-/* Number of the group named by the statement [p, p+n); 0 when memory ran out. */
+/* Number of the group with text [p, p+n); 0 when memory ran out. */
 static int32_t group_number(qc_ctx *ctx, group_names *g, const char *p, size_t n) {
     if ((size_t)(2 * g->n) >= g->n_slots && !group_grow(ctx, g)) return 0;
     size_t i = group_slot(g, p, n);
     if (g->slot[i]) return g->slot[i];
-    if (!qc__reserve(ctx, (void **)&g->name, &g->c_name, g->n + 1, sizeof *g->name) ||
-        !qc__reserve(ctx, (void **)&g->length, &g->c_length, g->n + 1, sizeof *g->length))
-        return 0;
-    g->name[g->n] = p;
-    g->length[g->n++] = n;
+    if (!qc__reserve(ctx, (void **)&g->name, &g->c_name, g->n + 1, sizeof *g->name)) return 0;
+    g->name[g->n] = g->soup->n_group_name;
+    if (!qc__soup_group(g->soup, p, n)) return 0;
+    g->n++;
     return g->slot[i] = (int32_t)g->n;
 }
 
+/* Sets the group of the next face; false when memory ran out. */
+static bool group_update(qc_ctx *ctx, group_names *g) {
+    int64_t n = 0;
+    if (!g->fresh) return true;
+    for (int k = 0; k < 3; k++) {
+        if (g->said[k].n == 0) continue;
+        if (!qc__reserve(ctx, (void **)&g->text, &g->c_text, n + 1 + (int64_t)g->said[k].n, 1))
+            return false;
+        if (n > 0) g->text[n++] = '\n';
+        memcpy(g->text + n, g->said[k].p, g->said[k].n);
+        n += (int64_t)g->said[k].n;
+    }
+    g->number = n > 0 ? group_number(ctx, g, g->text, (size_t)n) : 0;
+    g->fresh = false;
+    return n == 0 || g->number > 0;
+}
+
 static void group_free(group_names *g) {
+    qc__free(g->text);
     qc__free(g->name);
-    qc__free(g->length);
     qc__free(g->slot);
 }
 
@@ -99,9 +128,9 @@ static bool line_goes_on(qc__text *t) {
     return !qc__at_line_end(t) && *t->p != '#';
 }
 
-static qc_status read_face(qc__text *t, qc__soup *s, int32_t group) {
+static qc_status read_face(qc__text *t, qc__soup *s, group_names *g) {
     int64_t first = t->line, n = 0, vertex, uv;
-    if (!qc__soup_face(s, first, group)) return QC_ERR_NOMEM;
+    if (!group_update(t->ctx, g) || !qc__soup_face(s, first, g->number)) return QC_ERR_NOMEM;
     for (; line_goes_on(t); n++) {
         qc_status status = take_reference(t, s, &vertex, &uv);
         if (status != QC_OK) return status;
@@ -126,11 +155,16 @@ static qc_status read_polyline(qc__text *t, qc__soup *s) {
     return QC_OK;
 }
 
+/* x y z, and red, green, blue where there are six numbers. */
 static qc_status read_vertex(qc__text *t, qc__soup *s) {
-    double xyz[3];
+    double xyz[3], more[3];
     qc_status status = qc__take_point(t, "vertex", s->n_position / 3 + 1, xyz);
     if (status == QC_OK && !qc__soup_vertex(s, xyz)) status = QC_ERR_NOMEM;
-    return status;
+    int n = 0;
+    while (status == QC_OK && n < 3 && line_goes_on(t) && qc__take_double(t, &more[n]) &&
+           isfinite(more[n]))
+        n++;
+    return n == 3 && !qc__soup_colour(s, more) ? QC_ERR_NOMEM : status;
 }
 
 static qc_status read_uv(qc__text *t, qc__soup *s) {
@@ -146,37 +180,59 @@ static qc_status read_uv(qc__text *t, qc__soup *s) {
     return qc__soup_uv(s, uv[0], uv[1]) ? QC_OK : QC_ERR_NOMEM;
 }
 
-static qc_status read_group(qc__text *t, group_names *g, const char *statement, int32_t *group) {
+/* Length of the statement without its comment and blanks at its end. */
+static size_t statement_length(const qc__text *t, const char *statement) {
     const char *end = t->p;
-    while (end < t->end && !qc__is_end(*end)) end++;
-    *group = group_number(t->ctx, g, statement, (size_t)(end - statement));
-    return *group ? QC_OK : QC_ERR_NOMEM;
+    while (end < t->end && !qc__is_end(*end) && !(*end == '#' && qc__is_blank(end[-1]))) end++;
+    while (end > statement && qc__is_blank(end[-1])) end--;
+    return (size_t)(end - statement);
 }
 
-static qc_status read_statement(qc__text *t, qc__soup *s, group_names *g, int32_t *group) {
+/* kind: 0 = o, 1 = g, 2 = usemtl. */
+static void read_group(const qc__text *t, group_names *g, int kind, const char *statement) {
+    g->said[kind].p = statement;
+    g->said[kind].n = statement_length(t, statement);
+    g->fresh = true;
+}
+
+static qc_status read_materials(const qc__text *t, qc__soup *s, const char *statement) {
+    const size_t n = statement_length(t, statement);
+    if (s->materials) return QC_OK;
+    s->materials = QC__NEW(t->ctx, char, n + 1);
+    if (!s->materials) return QC_ERR_NOMEM;
+    memcpy(s->materials, statement, n);
+    s->materials[n] = 0;
+    return QC_OK;
+}
+
+static bool is(const char *word, size_t n, const char *name) {
+    return n == strlen(name) && memcmp(word, name, n) == 0;
+}
+
+static qc_status read_statement(qc__text *t, qc__soup *s, group_names *g) {
+    static const char *const kinds[] = {"o", "g", "usemtl"};
     const char *word = t->p;
     size_t n = qc__word_length(t);
     t->p += n;
-    if (n == 1 && *word == 'v') return read_vertex(t, s);
-    if (n == 1 && *word == 'f') return read_face(t, s, *group);
-    if (n == 2 && memcmp(word, "vt", 2) == 0) return read_uv(t, s);
-    if (n == 2 && memcmp(word, "fo", 2) == 0) return read_face(t, s, *group); /* old name of f */
-    if (n == 1 && *word == 'l') return read_polyline(t, s);
-    if ((n == 1 && (*word == 'g' || *word == 'o')) || (n == 6 && memcmp(word, "usemtl", 6) == 0))
-        return read_group(t, g, word, group);
+    if (is(word, n, "v")) return read_vertex(t, s);
+    if (is(word, n, "f") || is(word, n, "fo")) return read_face(t, s, g); /* fo: its old name */
+    if (is(word, n, "vt")) return read_uv(t, s);
+    if (is(word, n, "l")) return read_polyline(t, s);
+    if (is(word, n, "mtllib")) return read_materials(t, s, word);
+    for (int kind = 0; kind < 3; kind++)
+        if (is(word, n, kinds[kind])) read_group(t, g, kind, word);
     return QC_OK;
 }
 
 qc_status qc__read_obj(qc__text *t, qc__soup *s) {
-    group_names groups = {0};
-    int32_t group = 0;
+    group_names groups = {.soup = s};
     qc_status status = QC_OK;
     t->continued = true;
     for (int64_t i = 0; status == QC_OK; i++) {
         qc__skip_blanks(t);
         if (t->p == t->end) break;
         bool comment = *t->p == '#';
-        if (!comment && !qc__at_line_end(t)) status = read_statement(t, s, &groups, &group);
+        if (!comment && !qc__at_line_end(t)) status = read_statement(t, s, &groups);
         t->continued = !comment; /* a comment ends with its line */
         qc__skip_line(t);
         t->continued = true;

@@ -1,5 +1,6 @@
 /* PLY: the data behind the header, ASCII or binary of either byte order. Elements and properties
- * other than the coordinates and the corners of faces are skipped by their declared types. */
+ * other than coordinates, colours and quality of vertices and the corners of faces are skipped by
+ * their declared types. */
 #include "ply.h"
 
 #include <math.h>
@@ -94,21 +95,39 @@ static qc_status take_list(const reader *r, const qc__ply_property *p, qc__soup 
     return QC_OK;
 }
 
+/* Full intensity: the largest value of an integer type, 1 of a floating one. */
+static double full(int type) {
+    return type == QC__PLY_U8 ? 255 : type == QC__PLY_U16 ? 65535 : 1;
+}
+
+static qc_status add_vertex(const reader *r, const double value[], unsigned found, qc__soup *s) {
+    const unsigned rgb = 7u << QC__PLY_RED, quality = 1u << QC__PLY_QUALITY;
+    if (!isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2]))
+        return fail_here(r, "a coordinate is not finite; remove that vertex or export it again");
+    if (!qc__soup_vertex(s, value)) return QC_ERR_NOMEM;
+    if ((found & rgb) == rgb && !qc__soup_colour(s, value + QC__PLY_RED)) return QC_ERR_NOMEM;
+    if ((found & quality) && !qc__soup_quality(s, value[QC__PLY_QUALITY])) return QC_ERR_NOMEM;
+    return QC_OK;
+}
+
 static qc_status take_element(const reader *r, qc__soup *s) {
-    double xyz[3] = {0, 0, 0}, ignored;
-    bool vertex = strcmp(r->element->name, "vertex") == 0;
+    double value[QC__PLY_SKIP + 1] = {0}, x;
+    unsigned found = 0;
     qc_status status = QC_OK;
     for (int64_t k = 0; k < r->element->n_properties && status == QC_OK; k++) {
         const qc__ply_property *p = &r->h->property[r->element->property + k];
-        if (p->count_type != QC__PLY_NONE)
+        if (p->count_type != QC__PLY_NONE) {
             status = take_list(r, p, s);
-        else
-            status = take_scalar(r, p->type, p->role < 3 ? &xyz[p->role] : &ignored);
+            continue;
+        }
+        status = take_scalar(r, p->type, &x);
+        if (status != QC_OK) break;
+        const bool colour = p->role >= QC__PLY_RED && p->role <= QC__PLY_BLUE;
+        value[p->role] = colour ? x / full(p->type) : x;
+        if (isfinite(x)) found |= 1u << p->role;
     }
-    if (status != QC_OK || !vertex) return status;
-    if (!isfinite(xyz[0]) || !isfinite(xyz[1]) || !isfinite(xyz[2]))
-        return fail_here(r, "a coordinate is not finite; remove that vertex or export it again");
-    return qc__soup_vertex(s, xyz) ? QC_OK : QC_ERR_NOMEM;
+    if (status != QC_OK || strcmp(r->element->name, "vertex") != 0) return status;
+    return add_vertex(r, value, found, s);
 }
 
 static qc_status take_elements(reader *r, qc__soup *s) {

@@ -16,8 +16,19 @@ enum {
     QC__PLY_F32,
     QC__PLY_F64
 };
-/* What a property is used for: coordinates 0, 1, 2, the corners of a face, or nothing. */
-enum { QC__PLY_X, QC__PLY_Y, QC__PLY_Z, QC__PLY_CORNERS, QC__PLY_SKIP };
+/* What a property is used for: coordinates 0, 1, 2, colours 3, 4, 5, quality, the corners of a
+ * face, or nothing. */
+enum {
+    QC__PLY_X,
+    QC__PLY_Y,
+    QC__PLY_Z,
+    QC__PLY_RED,
+    QC__PLY_GREEN,
+    QC__PLY_BLUE,
+    QC__PLY_QUALITY,
+    QC__PLY_CORNERS,
+    QC__PLY_SKIP
+};
 
 typedef struct qc__ply_property {
     uint8_t type, count_type; /* count_type QC__PLY_NONE: a scalar */

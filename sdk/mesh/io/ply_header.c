@@ -63,11 +63,11 @@ static qc_status read_element(qc__text *t, qc__ply_header *h) {
 }
 
 static int role_of(qc__text *t, const qc__ply_element *e, bool list) {
-    static const char *const axis[] = {"x", "y", "z"};
+    static const char *const scalar[] = {"x", "y", "z", "red", "green", "blue", "quality"};
     qc__skip_blanks(t);
     if (!list && strcmp(e->name, "vertex") == 0)
-        for (int k = 0; k < 3; k++)
-            if (qc__take_word(t, axis[k])) return k;
+        for (int k = 0; k <= QC__PLY_QUALITY; k++)
+            if (qc__take_word(t, scalar[k])) return k;
     if (list && strcmp(e->name, "face") == 0 &&
         (qc__take_word(t, "vertex_indices") || qc__take_word(t, "vertex_index")))
         return QC__PLY_CORNERS;

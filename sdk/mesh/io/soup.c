@@ -1,11 +1,13 @@
 /* A polygon mesh of unknown size, grown while a file is read, checked and published at the end. */
-#include "internal.h"
-
 #include <string.h>
+
+#include "internal.h"
+#include "sdk/mesh/internal.h"
 
 void qc__soup_free(qc__soup *s) {
     void *arrays[] = {s->position, s->uv,         s->corner_vertex, s->corner_uv,
-                      s->line,     s->face_begin, s->face_line,     s->face_group};
+                      s->line,     s->face_begin, s->face_line,     s->face_group,
+                      s->colour,   s->quality,    s->group_name,    s->materials};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) qc__free(arrays[i]);
 }
 
@@ -18,6 +20,34 @@ bool qc__soup_vertex(qc__soup *s, const double xyz[3]) {
     if (!ROOM(s, s->position, s->n_position, s->c_position, 3)) return false;
     memcpy(s->position + s->n_position, xyz, 3 * sizeof *xyz);
     s->n_position += 3;
+    return true;
+}
+
+static bool set_last(qc__soup *s, double **array, int64_t *n, int64_t *capacity, int width,
+                     const double *x) {
+    const int64_t whole = s->n_position / 3 * width;
+    if (whole > *capacity && !qc__reserve(s->ctx, (void **)array, capacity, whole, sizeof **array))
+        return false;
+    for (; *n < whole - width; ++*n) (*array)[*n] = 0;
+    for (int k = 0; k < width; k++) (*array)[whole - width + k] = x[k];
+    *n = whole;
+    return true;
+}
+
+bool qc__soup_colour(qc__soup *s, const double rgb[3]) {
+    return set_last(s, &s->colour, &s->n_colour, &s->c_colour, 3, rgb);
+}
+
+bool qc__soup_quality(qc__soup *s, double quality) {
+    return set_last(s, &s->quality, &s->n_quality, &s->c_quality, 1, &quality);
+}
+
+bool qc__soup_group(qc__soup *s, const char *text, size_t n) {
+    if (!ROOM(s, s->group_name, s->n_group_name, s->c_group_name, (int64_t)n + 1)) return false;
+    memcpy(s->group_name + s->n_group_name, text, n);
+    s->n_group_name += (int64_t)n + 1;
+    s->group_name[s->n_group_name - 1] = 0;
+    s->n_groups++;
     return true;
 }
 
@@ -120,6 +150,16 @@ static void copy(void *to, const void *from, int64_t n, size_t size) {
     if (n > 0 && to && from) memcpy(to, from, (size_t)n * size);
 }
 
+static qc_status name_groups(qc__soup *s, qc_polygon_mesh *m) {
+    const char **name = QC__NEW(s->ctx, const char *, s->n_groups);
+    if (!name) return QC_ERR_NOMEM;
+    const char *text = s->group_name;
+    for (int32_t i = 0; i < s->n_groups; i++, text += strlen(text) + 1) name[i] = text;
+    const qc_status status = qc__polygon_name_groups(s->ctx, m, s->n_groups, name, s->materials);
+    qc__free(name);
+    return status;
+}
+
 qc_status qc__soup_finish(qc__soup *s, qc__text *t, qc_polygon_mesh **out) {
     qc_status status = check_counts(s, t);
     if (status == QC_OK) status = check_faces(s, t);
@@ -130,7 +170,10 @@ qc_status qc__soup_finish(qc__soup *s, qc__text *t, qc_polygon_mesh **out) {
     status = qc_polygon_mesh_create(
         s->ctx, (int32_t)(s->n_position / 3), (int32_t)s->n_face, (int32_t)s->n_corner,
         (int32_t)(n_uv / 2), (int32_t)(s->n_line / 2),
-        QC_POLYGON_FACE_LINE | (s->has_groups ? (uint32_t)QC_POLYGON_FACE_GROUP : 0u), &m);
+        QC_POLYGON_FACE_LINE | (s->has_groups ? (uint32_t)QC_POLYGON_FACE_GROUP : 0u) |
+            (s->n_colour > 0 ? (uint32_t)QC_POLYGON_COLOUR : 0u) |
+            (s->n_quality > 0 ? (uint32_t)QC_POLYGON_QUALITY : 0u),
+        &m);
     if (status != QC_OK) return status;
     copy(m->position, s->position, s->n_position, sizeof(double));
     copy(m->face_offset, s->face_begin, s->n_face, sizeof(int32_t));
@@ -144,6 +187,12 @@ qc_status qc__soup_finish(qc__soup *s, qc__text *t, qc_polygon_mesh **out) {
         copy(m->corner_uv, s->corner_uv, s->n_corner_uv, sizeof(int32_t));
         for (int64_t c = s->n_corner_uv; c < s->n_corner; c++) m->corner_uv[c] = -1;
     }
-    *out = m;
-    return QC_OK;
+    copy(m->colour, s->colour, s->n_colour, sizeof(double));
+    copy(m->quality, s->quality, s->n_quality, sizeof(double));
+    if (s->n_groups > 0) status = name_groups(s, m);
+    if (status == QC_OK)
+        *out = m;
+    else
+        qc_object_release(m);
+    return status;
 }

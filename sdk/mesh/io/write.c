@@ -85,19 +85,35 @@ static void put_face(output *o, const qc_polygon_mesh *m, int32_t f) {
 static void put_group(output *o, const qc_polygon_mesh *m, int32_t f) {
     if (!m->face_group || m->face_group[f] <= 0) return;
     if (f > 0 && m->face_group[f] == m->face_group[f - 1]) return;
-    put_text(o, "g group", 7);
-    put_int(o, m->face_group[f]);
+    if (m->face_group[f] <= m->n_groups) {
+        const char *name = m->group_name[m->face_group[f] - 1];
+        put_text(o, name, strlen(name));
+    } else {
+        put_text(o, "g group", 7);
+        put_int(o, m->face_group[f]);
+    }
     put_char(o, '\n');
+}
+
+static void put_vertex(output *o, const qc_polygon_mesh *m, int64_t v) {
+    double x[6];
+    memcpy(x, m->position + 3 * v, 3 * sizeof *x);
+    if (m->colour) memcpy(x + 3, m->colour + 3 * v, 3 * sizeof *x);
+    put_point(o, "v", x, m->colour ? 6 : 3);
 }
 
 /* Vertices, texture coordinates, faces and lines are one sequence for progress and cancelling. */
 static bool put_mesh(qc_ctx *ctx, output *o, const qc_polygon_mesh *m) {
     int64_t nv = m->n_vertices, nu = m->uv ? m->n_uvs : 0, nf = m->n_faces;
     int64_t n = nv + nu + nf + (m->line ? m->n_lines : 0);
+    if (m->materials) {
+        put_text(o, m->materials, strlen(m->materials));
+        put_char(o, '\n');
+    }
     for (int64_t i = 0; i < n && !o->failed; i++) {
         int64_t j = i - nv - nu;
         if (i < nv)
-            put_point(o, "v", m->position + 3 * i, 3);
+            put_vertex(o, m, i);
         else if (j < 0)
             put_point(o, "vt", m->uv + 2 * (i - nv), 2);
         else if (j < nf) {
@@ -133,6 +149,8 @@ qc_status qc_polygon_mesh_write(qc_ctx *ctx, const qc_polygon_mesh *mesh, const 
         check_finite(ctx, mesh->position, 3 * (int64_t)mesh->n_vertices, 3, "vertex");
     if (status == QC_OK && mesh->uv)
         status = check_finite(ctx, mesh->uv, 2 * (int64_t)mesh->n_uvs, 2, "texture coordinate");
+    if (status == QC_OK && mesh->colour)
+        status = check_finite(ctx, mesh->colour, 3 * (int64_t)mesh->n_vertices, 3, "colour");
     if (status != QC_OK) return status;
     output *o = QC__NEW(ctx, output, 1);
     if (!o) return QC_ERR_NOMEM;

@@ -4,7 +4,7 @@
 
 typedef struct input {
     const qc_mesh *mesh;
-    const qc_polygon_mesh *quads;
+    const qc_polygon_mesh *quads, *all; /* all: triangles with every attribute */
 } input;
 
 static qc_status work(qc_ctx *ctx, const void *data) {
@@ -13,14 +13,29 @@ static qc_status work(qc_ctx *ctx, const void *data) {
     const qc_status status = qc_quads_relax(ctx, in->mesh, in->quads, NULL, &out);
     assert_true((status == QC_OK) == (out != NULL));
     qc_object_release(out);
-    return status;
+    if (status != QC_OK) return status;
+    out = NULL;
+    const qc_status second = qc_quads_transfer(ctx, in->all, in->mesh, in->quads, &out);
+    assert_true((second == QC_OK) == (out != NULL));
+    qc_object_release(out);
+    return second;
 }
 
 static void test_failures(void **state) {
     qc_mesh *m = grid(*state, 3, 3, 0, 1);
     qc_polygon_mesh *q = quad_grid(*state, 3, 0.2, -1, 1);
-    const input in = {m, q};
+    qc_polygon_mesh *all = NULL;
+    assert_int_equal(qc_polygon_mesh_create(*state, m->n_vertices, m->n_faces, 3 * m->n_faces, 1, 0,
+                                            QC_POLYGON_FACE_GROUP | QC_POLYGON_COLOUR, &all),
+                     QC_OK);
+    memcpy(all->position, m->position, 3 * sizeof(double) * (size_t)m->n_vertices);
+    memcpy(all->face_vertex, m->face_vertex, 3 * sizeof(int32_t) * (size_t)m->n_faces);
+    for (int32_t f = 0; f < m->n_faces; f++) all->face_offset[f + 1] = 3 * f + 3;
+    const char *const name[] = {"g a"};
+    assert_int_equal(qc__polygon_name_groups(*state, all, 1, name, "mtllib m"), QC_OK);
+    const input in = {m, q, all};
     fail_every_allocation(work, &in);
+    qc_object_release(all);
     qc_object_release(q);
     qc_object_release(m);
 }

@@ -44,10 +44,15 @@ static void test_obj_corners(void **state) {
     assert_int_equal(m->n_uvs, 3);
     const int32_t vertex[] = {0, 1, 2, 0, 2, 3, 0, 1, 2, 3},
                   uv[] = {0, 1, 2, -1, -1, -1, 0, 1, 2, -1};
-    const int32_t group[] = {1, 2, 1}, line[] = {0, 1, 1, 2}, at[] = {10, 12, 14};
+    const int32_t group[] = {1, 2, 2}, line[] = {0, 1, 1, 2}, at[] = {10, 12, 14};
     assert_memory_equal(m->face_vertex, vertex, sizeof vertex);
     assert_memory_equal(m->corner_uv, uv, sizeof uv);
     assert_memory_equal(m->face_group, group, sizeof group);
+    assert_int_equal(m->n_groups, 2);
+    assert_string_equal(m->group_name[0], "g a");
+    assert_string_equal(m->group_name[1], "g a\nusemtl b");
+    const double colour[] = {0, 0, 0, 0, 0, 0, .1, .2, .3, 0, 0, 0};
+    assert_memory_equal(m->colour, colour, sizeof colour);
     assert_int_equal(m->n_lines, 2);
     assert_memory_equal(m->line, line, sizeof line);
     assert_memory_equal(m->face_line, at, sizeof at);
