@@ -6,7 +6,12 @@
 
 typedef struct params {
     double quads, edge_length, edge_length_rel;
+    double turn, range, gradation;
+    bool painted;
+    const char *file;
 } params;
+
+#define PI 3.14159265358979323846
 
 #define DEFAULT_QUADS 10000.0
 
@@ -22,11 +27,28 @@ static qc_status size(const qc_run *run, const void *p) {
             given->edge_length > 0 ? given->edge_length : given->edge_length_rel * mesh->diagonal;
     }
     qc_sizing *out = NULL;
-    qc_status status = qc_sizing_create(run->ctx, mesh, length, quads, NULL, &out);
+    qc_status status;
+    if (given->turn > 0 || given->painted || given->file) {
+        qc_size_options options = QC_SIZE_OPTIONS_INIT;
+        options.edge_length = length;
+        options.turn = given->turn * PI / 180;
+        options.range = given->range;
+        options.gradation = given->gradation;
+        options.painted = given->painted;
+        options.path = given->file;
+        options.input = run->input(run, "input");
+        status = qc_sizing_create_varying(run->ctx, mesh, quads, &options, &out);
+    } else {
+        status = qc_sizing_create(run->ctx, mesh, length, quads, NULL, &out);
+    }
     return status ? status : run->output(run, "sizing", out);
 }
 
-static const qc_port inputs[] = {{"mesh", QC_TYPE_MESH, 0, "triangle mesh"}};
+static const qc_port inputs[] = {
+    {"mesh", QC_TYPE_MESH, 0, "triangle mesh"},
+    {"input", QC_TYPE_POLYGON_MESH, QC_PORT_OPTIONAL,
+     "what it was repaired from: painted density, and what a file of lengths counts"},
+};
 static const qc_port outputs[] = {{"sizing", QC_TYPE_SIZING, 0, "target edge length"}};
 static const qc_param table[] = {
     QC_PARAM_REAL(
@@ -37,6 +59,17 @@ static const qc_param table[] = {
         "edge length of a quad in the units of the mesh; 0 = not given; wins over the others"),
     QC_PARAM_REAL(params, edge_length_rel, 0, 0, 1, "diagonal",
                   "edge length of a quad in parts of the bounding box diagonal; 0 = not given"),
+    QC_PARAM_REAL(params, turn, 0, 0, 180, "deg",
+                  "edges shrink where the surface turns by more along them; 0 = same length "
+                  "everywhere"),
+    QC_PARAM_REAL(params, range, 4, 1, 100, "",
+                  "factor by which curvature and paint change the length at most"),
+    QC_PARAM_REAL(params, gradation, 0.25, 0, 10, "",
+                  "lengths grow by at most this times the way on the surface; 0 = no limit"),
+    QC_PARAM_BOOL(params, painted, false,
+                  "the PLY vertex property `quality` multiplies the number of quads on an area"),
+    QC_PARAM_TEXT(params, file,
+                  "text file with a length for each vertex, or for each face, of the input"),
 };
 
 const qc_stage qc_stage_size = {
@@ -47,14 +80,15 @@ const qc_stage qc_stage_size = {
     "The edge length h of a quad is edge_length, else edge_length_rel times the bounding box "
     "diagonal, "
     "else sqrt(area / quads). A length is meant literally; a number of quads is met by later "
-    "stages.",
+    "stages. turn, painted and file make the length change over the surface; with a number of "
+    "quads all lengths are scaled to ask for that many.",
     "docs/files.md",
     inputs,
     outputs,
-    1,
+    2,
     1,
     table,
-    3,
+    sizeof table / sizeof *table,
     sizeof(params),
     size,
 };

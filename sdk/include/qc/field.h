@@ -27,6 +27,28 @@ typedef struct qc_sizing {
 QC_API qc_status qc_sizing_create(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
                                   double target_quads, const double *length, qc_sizing **out);
 
+typedef struct qc_size_options {
+    uint32_t struct_size;
+    double edge_length; /* where nothing else is said, in the units of the mesh                 */
+    double turn;        /* radians; > 0: edges shrink so that the surface turns by at most so much
+                           along them                                                           */
+    double range;       /* factor, >= 1, by which curvature and paint change a length at most   */
+    double gradation; /* lengths grow by at most this times the way on the surface; 0 = no limit */
+    bool painted;     /* input->quality multiplies the number of quads on an area             */
+    const char
+        *path; /* text: a length for each vertex, or for each face, of the input; NULL = none */
+    const qc_polygon_mesh
+        *input; /* which the mesh's source numbers count; NULL = the mesh itself */
+} qc_size_options;
+#define QC_SIZE_OPTIONS_INIT                                                                       \
+    { sizeof(qc_size_options), 0, 0, 4, 0.25, false, NULL, NULL }
+/* A sizing whose length changes over the surface. With target_quads > 0 all lengths are scaled to
+ * ask for that many. Errors: ARGUMENT (a number out of range, no paint), IO, INPUT (where = line:
+ * not a positive number; a number of lengths which fits neither vertices nor faces), NOMEM,
+ * CANCELLED. */
+QC_API qc_status qc_sizing_create_varying(qc_ctx *ctx, const qc_mesh *mesh, double target_quads,
+                                          const qc_size_options *options, qc_sizing **out);
+
 typedef struct qc_face_field {
     qc_object object;
     const qc_mesh *mesh;
