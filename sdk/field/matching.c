@@ -15,6 +15,7 @@ static void matching_destroy(qc_object *object) {
     qc__free(o->theta);
     qc__free(o->index4);
     qc__free(o->axis);
+    qc__free((void *)(uintptr_t)o->matching.pole_index4);
     qc_object_release(o->matching.field);
     qc__free(o);
 }
@@ -29,6 +30,15 @@ typedef struct match_job {
 static double turning(const match_job *j, int32_t e) {
     int32_t s = j->mesh->edge_halfedge[2 * e] / 3, t = j->mesh->edge_halfedge[2 * e + 1] / 3;
     return qc__arg(qc__c(j->x[t]) * conj(qc__c(j->rho[e]) * qc__c(j->x[s])));
+}
+
+/* Quarter turns of vector fields. */
+static void match_vectors(const match_job *j) {
+    for (int32_t e = 0; e < j->mesh->n_edges; e++) {
+        const bool inside = j->mesh->edge_halfedge[2 * e + 1] >= 0;
+        j->m[e] = 0;
+        j->theta[e] = inside ? turning(j, e) : 0;
+    }
 }
 
 static void match_edges(void *arg, int64_t begin, int64_t end, uint32_t worker) {
@@ -121,6 +131,9 @@ static qc_status fill(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
             for (int32_t e = 0; e < mesh->n_edges; e++)
                 o->m[e] = mesh->edge_halfedge[2 * e + 1] >= 0 ? m[e] : 0;
             measure_given(mesh, rho, field->x, o->m, o->theta);
+        } else if (field->is_vector) {
+            const match_job job = {mesh, rho, field->x, o->m, o->theta};
+            match_vectors(&job);
         } else {
             qc__field_match(ctx, mesh, rho, field->x, o->m, o->theta);
             if (o->axis)

@@ -3,8 +3,8 @@
  * image angle is below pi; and the ends of an edge are not both to be pinned, as their images may
  * coincide or lie in a direction which another pinned neighbour has too. Hard features pin in the
  * same way, but for the edges along them. */
+#include "refine.h"
 #include "sector.h"
-#include "split.h"
 
 /* Vertices which the map pins: cones, and those on hard features. */
 enum { CONE = 1, HARD = 2 };
@@ -73,95 +73,6 @@ static qc_status mark_edges(qc_ctx *ctx, const qc_matching *matching, uint8_t *s
     return status;
 }
 
-static qc_status split_field(qc_ctx *ctx, const qc_face_field *old, const qc__bisection *b,
-                             qc_face_field **out) {
-    const size_t n = (size_t)b->mesh->n_faces;
-    qc_complex *x = QC__NEW(ctx, qc_complex, n);
-    double *weight = old->weight ? QC__NEW(ctx, double, n) : NULL;
-    uint8_t *trusted = old->trusted ? QC__NEW(ctx, uint8_t, n) : NULL;
-    uint8_t *aligned = old->aligned ? QC__NEW(ctx, uint8_t, b->mesh->n_edges) : NULL;
-    qc_face_field *field = NULL;
-    qc_status status = QC_ERR_NOMEM;
-    if (x && (weight || !old->weight) && (trusted || !old->trusted) && (aligned || !old->aligned)) {
-        for (size_t t = 0; t < n; t++) {
-            const int32_t p = b->parent[t];
-            x[t] = qc__z(qc__c(old->x[p]) * qc__c(b->turn[t]));
-            if (weight) weight[t] = old->weight[p];
-            if (trusted) trusted[t] = old->trusted[p];
-        }
-        status = qc_face_field_create(ctx, b->mesh, x, weight, trusted, &field);
-    }
-    if (!status && aligned) {
-        qc__bisection_flags(b, old->mesh, old->aligned, aligned);
-        status = qc_face_field_set_aligned(ctx, field, aligned);
-    }
-    qc__free(x);
-    qc__free(weight);
-    qc__free(trusted);
-    qc__free(aligned);
-    if (status)
-        qc_object_release(field);
-    else
-        *out = field;
-    return status;
-}
-
-/* The halves of an edge keep its theta, and its m up to multiples of 4: a turn of nearly pi may
- * come out with the other sign in a child. Edges inside a face have theta = 0. */
-static qc_status split_turns(qc_ctx *ctx, const qc_matching *old, const qc__bisection *b,
-                             const qc_face_field *field, int8_t *m) {
-    const qc_mesh *mesh = b->mesh;
-    qc_complex *edge = QC__NEW(ctx, qc_complex, 3 * (size_t)mesh->n_faces);
-    qc_complex *rho = QC__NEW(ctx, qc_complex, mesh->n_edges);
-    qc_status status = edge && rho ? QC_OK : QC_ERR_NOMEM;
-    if (!status) status = qc_tangent_edges(ctx, mesh, edge);
-    if (!status) status = qc_tangent_transport(ctx, mesh, edge, rho);
-    for (int32_t e = 0; !status && e < mesh->n_edges; e++) {
-        const int32_t h = b->parent_halfedge[mesh->edge_halfedge[2 * e]];
-        const int32_t t = mesh->edge_halfedge[2 * e + 1];
-        m[e] = 0;
-        if (h < 0 || t < 0) continue;
-        const int32_t parent = old->field->mesh->halfedge_edge[h];
-        const qc__cplx before = qc__c(rho[e]) * qc__c(field->x[mesh->edge_halfedge[2 * e] / 3]);
-        const double turning = qc__arg(qc__c(field->x[t / 3]) * conj(before));
-        const double inherited = old->theta[parent] + old->m[parent] * QC__PI / 2;
-        m[e] = (int8_t)(old->m[parent] + 4 * (int)round((turning - inherited) / (2 * QC__PI)));
-    }
-    qc__free(edge);
-    qc__free(rho);
-    return status;
-}
-
-static qc_status split_matching(qc_ctx *ctx, const qc_matching *old, const qc__bisection *b,
-                                qc_matching **out) {
-    qc_face_field *field = NULL;
-    int8_t *m = QC__NEW(ctx, int8_t, b->mesh->n_edges);
-    qc_status status = m ? split_field(ctx, old->field, b, &field) : QC_ERR_NOMEM;
-    if (!status) status = split_turns(ctx, old, b, field, m);
-    if (!status) status = qc_matching_create(ctx, field, m, out);
-    qc_object_release(field);
-    qc__free(m);
-    return status;
-}
-
-static qc_status split_all(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
-                           const uint8_t *split, qc__bisection *b, qc_sizing **sizing_out,
-                           qc_matching **matching_out) {
-    qc_sizing *s = NULL;
-    qc_matching *m = NULL;
-    qc_status status = qc__bisect_edges(ctx, matching->field->mesh, split, b);
-    if (!status && !qc__progress(ctx, 0.5)) status = QC_ERR_CANCELLED;
-    if (!status) status = qc__bisection_sizing(ctx, b, sizing, &s);
-    if (!status) status = split_matching(ctx, matching, b, &m);
-    if (status) {
-        qc_object_release(s);
-        return status;
-    }
-    *sizing_out = s;
-    *matching_out = m;
-    return QC_OK;
-}
-
 qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
                             qc_mesh **mesh, qc_sizing **sizing_out, qc_matching **matching_out) {
     const qc_mesh *old = matching->field->mesh;
@@ -169,7 +80,7 @@ qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching, const qc_s
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
                         "the sizing and the matching are of different meshes");
     uint8_t *split = QC__NEW(ctx, uint8_t, old->n_edges);
-    qc__bisection b = {NULL, NULL, NULL, NULL};
+    qc__refinement b = {NULL, NULL, NULL, NULL};
     bool any = false;
     qc_status status = split ? mark_edges(ctx, matching, split, &any) : QC_ERR_NOMEM;
     if (!status && !any) {
@@ -177,10 +88,12 @@ qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching, const qc_s
         *sizing_out = qc_object_retain(sizing);
         *matching_out = qc_object_retain(matching);
     } else if (!status) {
-        status = split_all(ctx, matching, sizing, split, &b, sizing_out, matching_out);
+        status = qc__bisect_edges(ctx, old, split, &b);
+        if (!status)
+            status = qc__refinement_carry(ctx, &b, matching, sizing, matching_out, sizing_out);
         if (!status) *mesh = qc_object_retain(b.mesh);
     }
-    qc__bisection_free(&b);
+    qc__refinement_free(&b);
     qc__free(split);
     return status;
 }

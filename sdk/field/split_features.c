@@ -1,7 +1,7 @@
 /* Refines a mesh until hard features leave a piecewise linear map room: an edge between two
  * vertices on features whose images lie on one isoline would have to be mapped to it too, and a
  * face with two feature edges cannot follow both. */
-#include "split.h"
+#include "refine.h"
 
 /* Edges between features, and those of faces with three feature edges. False when there is none. */
 static bool mark_edges(const qc_features *f, uint8_t *split) {
@@ -22,23 +22,23 @@ static bool mark_edges(const qc_features *f, uint8_t *split) {
 static qc_status split_once(qc_ctx *ctx, const qc_features *f, const qc_sizing *sizing,
                             const uint8_t *split, qc_features **features_out,
                             qc_sizing **sizing_out) {
-    qc__bisection b = {NULL, NULL, NULL, NULL};
+    qc__refinement b = {NULL, NULL, NULL, NULL};
     qc_features *features = NULL;
     qc_status status = qc__bisect_edges(ctx, f->mesh, split, &b);
     if (status) return status;
     uint8_t *edge = QC__NEW(ctx, uint8_t, b.mesh->n_edges);
     status = edge ? QC_OK : QC_ERR_NOMEM;
     if (!status) {
-        qc__bisection_flags(&b, f->mesh, f->edge, edge);
+        qc__refinement_flags(&b, f->mesh, f->edge, edge);
         status = qc_features_create(ctx, b.mesh, edge, f->hard, &features);
     }
-    if (!status && sizing) status = qc__bisection_sizing(ctx, &b, sizing, sizing_out);
+    if (!status && sizing) status = qc__refinement_sizing(ctx, &b, sizing, sizing_out);
     if (status)
         qc_object_release(features);
     else
         *features_out = features;
     qc__free(edge);
-    qc__bisection_free(&b);
+    qc__refinement_free(&b);
     return status;
 }
 

@@ -15,6 +15,8 @@ static void mesh_destroy(qc_object *object) {
     qc__free((void *)m->face_component);
     qc__free((void *)m->source_face);
     qc__free((void *)m->source_vertex);
+    qc__free((void *)m->pole_start);
+    qc__free((void *)m->pole_corner);
     qc__free(m);
 }
 

@@ -16,10 +16,10 @@ static const step after_field[] = {{"matching", "qc.matching"}};
 static const step optimisation[] = {{"cancel", "qc.optimize.cancel"},
                                     {"curl", "qc.optimize.curl"},
                                     {"balance", "qc.optimize.balance"}};
-static const step after_matching[] = {{"split", "qc.split"},     {"hodge", "qc.hodge"},
-                                      {"round", "qc.round"},     {"untangle", "qc.untangle"},
-                                      {"extract", "qc.extract"}, {"finish", "qc.finish"},
-                                      {"measure", "qc.measure"}};
+static const step after_matching[] = {{"split", "qc.split"},       {"open", "qc.open"},
+                                      {"hodge", "qc.hodge"},       {"round", "qc.round"},
+                                      {"untangle", "qc.untangle"}, {"extract", "qc.extract"},
+                                      {"finish", "qc.finish"},     {"measure", "qc.measure"}};
 
 #define APPEND(pipeline, steps) append(pipeline, steps, sizeof(steps) / sizeof *(steps))
 

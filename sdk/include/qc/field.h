@@ -58,6 +58,9 @@ typedef struct qc_face_field {
     const uint8_t *trusted; /* optional, n_faces: 1 where the direction is to be kept */
     const uint8_t *aligned; /* optional, n_edges: 1 on hard features, which isolines have to follow;
                                a direction of the cross runs along such an edge on either side */
+    int32_t
+        is_vector; /* 1: x of one face goes with x of its neighbours (the gradient of a function),
+                      so that no edge has a quarter turn; set it before the field is shared */
 } qc_face_field;
 /* Copies its arrays (weight, trusted may be NULL), normalises x, retains the mesh. ARGUMENT with
  * where = face when x is zero or not finite. */
@@ -75,6 +78,12 @@ enum { QC_CURVATURE_HILDEBRANDT_POLTHIER = 0, QC_CURVATURE_COHEN_STEINER_MORVAN 
  * more than 200 faces. */
 QC_API qc_status qc_field_curvature(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator,
                                     double radius, qc_complex *x, double *kappa);
+/* The gradient of the piecewise linear function g (n_vertices): x = grad g / |grad g|, weight =
+ * |grad g| over its maximum (each n_faces). Where it is below 1e-6 the weight is 0, trusted
+ * (n_faces) too, and x is transported from the faces around. ARGUMENT with where = vertex when g is
+ * not finite. */
+QC_API qc_status qc_field_gradient(qc_ctx *ctx, const qc_mesh *mesh, const double *g, qc_complex *x,
+                                   double *weight, uint8_t *trusted);
 /* Stability weights (5.2): |k1 - k2| l exp(-1/2 sum |theta|) with l = sqrt(mesh->area) / 100, the
  * edge of one quad of 10000: pure numbers which depend on the surface, not on its scale or
  * resolution. weight: n_faces; kappa: 2 n_faces. */
@@ -157,14 +166,16 @@ typedef struct qc_matching {
     const int32_t *index4; /* n_vertices: index in quarters; 0 on the boundary                 */
     const int8_t *axis;    /* optional, n_edges: -1, or on hard features k in 0..3: the halfedge
                               edge_halfedge[2 e] runs along i^k x_s in its face s              */
-    int32_t n_singular;    /* interior vertices with index4 != 0                                */
+    int32_t n_singular;    /* interior vertices with index4 != 0, and poles                     */
     int32_t index4_sum;    /* = 4 chi on a closed mesh (checked)                               */
+    const int32_t *pole_index4; /* mesh->n_poles: their indices; NULL = unknown */
 } qc_matching;
-/* m NULL: the straightest matching; otherwise the given one (n_edges; any turns). Where the field
- * has hard features, each sector between two of them at a vertex gets at least one quarter turn,
- * and a number within one of its angle, if need be by turns at edges inside the sector beyond pi/4
- * (m NULL only); FAILED with where = vertex when it has no such edge. FAILED when the indices of a
- * closed mesh do not sum to 4 chi (cannot happen for finite fields). */
+/* m NULL: the straightest matching, without quarter turns for a vector field; otherwise the given
+ * one (n_edges; any turns). Where the field has hard features, each sector between two of them at a
+ * vertex gets at least one quarter turn, and a number within one of its angle, if need be by turns
+ * at edges inside the sector beyond pi/4 (m NULL only); FAILED with where = vertex when it has no
+ * such edge. FAILED when the indices of a closed mesh do not sum to 4 chi (cannot happen for finite
+ * fields). */
 QC_API qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
                                     qc_matching **out);
 
@@ -190,6 +201,18 @@ QC_API qc_status qc_features_split(qc_ctx *ctx, const qc_features *features,
 QC_API qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching,
                                    const qc_sizing *sizing, qc_mesh **mesh, qc_sizing **sizing_out,
                                    qc_matching **matching_out);
+
+/* Cuts the star of every vertex of positive integer index open (Algorithm 1 of the second paper,
+ * lines 1 to 7): each of its faces gets a tip of its own there (mesh->n_poles, pole_corner). Rings
+ * of vertices on the edges of the star are inserted before, so that poles share no vertex with
+ * another one or the boundary and the star is not larger than half a quad: mesh lies on the same
+ * surface. Old vertices keep their numbers, a pole that of its first tip. source_face as of the old
+ * mesh; source_vertex of tips is that of the pole, of ring vertices -1. No pole: the same objects,
+ * retained. Errors: ARGUMENT (sizing of another mesh; where = vertex: two poles are neighbours, run
+ * qc_matching_split before), NOMEM, CANCELLED. */
+QC_API qc_status qc_matching_open(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
+                                  qc_mesh **mesh, qc_sizing **sizing_out,
+                                  qc_matching **matching_out);
 
 /* Directional's .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a face),
  * recognised by content; N = 4 (N = 1 or 2 also make a cross). Vectors are projected to the face;

@@ -77,7 +77,8 @@ QC_API qc_status qc_corner_map_set_axis(qc_ctx *ctx, qc_corner_map *map, const i
 /* Attaches the map before rounding (6 n_faces, copied) to a map which is not yet shared. */
 QC_API qc_status qc_corner_map_set_relaxed(qc_ctx *ctx, qc_corner_map *map, const double *uv);
 /* The map as a polygon mesh with one vt per corner, and back: faces of `soup` must be triangles
- * with uvs. */
+ * with uvs. Each face at a pole becomes a quad with two vertices there, in which the map is
+ * bilinear (Fig. 6 and (3) of the second paper); back, its tip is mapped between the two. */
 QC_API qc_status qc_corner_map_to_polygons(qc_ctx *ctx, const qc_corner_map *map,
                                            qc_polygon_mesh **out);
 QC_API qc_status qc_corner_map_from_polygons(qc_ctx *ctx, const qc_polygon_mesh *soup,
@@ -167,8 +168,9 @@ QC_API qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map,
 /* --- extraction (stages/extract/extract.md) */
 
 /* Quads of an exact integer-grid map: manifold, oriented, only quads, Euler characteristic of the
- * mesh on closed surfaces and its number of boundary loops otherwise, no duplicate faces; or FAILED
- * naming place and count. *out carries source faces and barycentrics. */
+ * mesh on closed surfaces and its number of boundary loops otherwise, the holes of poles closed
+ * with quads (docs/theory/poles.md), no duplicate faces; or FAILED naming place and count. *out
+ * carries source faces and barycentrics. */
 QC_API qc_status qc_map_extract(qc_ctx *ctx, const qc_grid_map *grid, qc_polygon_mesh **out);
 
 /* --- report ----------------------------------------------------------------------------------- */

@@ -116,6 +116,11 @@ typedef struct qc_mesh {
     const int32_t *face_component; /* n_faces */
     const int32_t *source_face,
         *source_vertex; /* optional: numbers in the input the mesh came from  */
+    /* Poles: vertices of the surface whose star is cut open, so that each of its faces has a tip of
+     * its own at that point (Fig. 8 of the second paper). Each is a boundary loop of this mesh. */
+    int32_t n_poles;
+    const int32_t *pole_start;  /* n_poles + 1, NULL = no pole */
+    const int32_t *pole_corner; /* the tips of a pole: corners, counter-clockwise about it */
 } qc_mesh;
 
 /* Builds the connectivity of an oriented manifold triangle list (arrays are copied). Errors:
@@ -130,6 +135,10 @@ QC_API qc_status qc_mesh_create_from(qc_ctx *ctx, int32_t n_vertices, const doub
                                      int32_t n_faces, const int32_t *face_vertex,
                                      const int32_t *source_vertex, const int32_t *source_face,
                                      qc_mesh **out);
+/* Records the poles of a mesh which is not yet shared. tip: 3 n_faces flags, 1 at the corners whose
+ * vertices are tips. Poles are in the order of their lowest tip, which is their first. ARGUMENT
+ * with where = corner when the face is not the only one at its tip or the tips form no loop. */
+QC_API qc_status qc_mesh_set_poles(qc_ctx *ctx, qc_mesh *mesh, const uint8_t *tip);
 /* One connected component as a mesh of its own; source_face/vertex refer to the numbers in `mesh`.
  */
 QC_API qc_status qc_mesh_component(qc_ctx *ctx, const qc_mesh *mesh, int32_t component,
@@ -156,6 +165,12 @@ static inline int32_t qc_corner_ccw(const qc_mesh *m, int32_t c) {
 static inline int32_t qc_corner_cw(const qc_mesh *m, int32_t c) {
     int32_t h = m->twin[qc_prev(c)];
     return h < 0 ? -1 : qc_prev(h);
+}
+/* The next tip of a pole counter-clockwise; they share the vertex of corner qc_prev(tip). */
+static inline int32_t qc_next_tip(const qc_mesh *m, int32_t tip) {
+    int32_t c = qc_prev(tip);
+    for (int32_t d = qc_corner_ccw(m, c); d >= 0; d = qc_corner_ccw(m, c)) c = d;
+    return qc_prev(c);
 }
 static inline bool qc_vertex_on_boundary(const qc_mesh *m, int32_t v) {
     return m->twin[qc_prev(m->vertex_corner[v])] < 0;

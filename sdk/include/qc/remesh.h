@@ -34,7 +34,7 @@ typedef struct qc_default_pipeline_options {
     { sizeof(qc_default_pipeline_options), 0.0, 0.0, 0.0, 0.0, NULL, 0, QC_MODE_FAST }
 
 /* repair, size, features, refine, curvature and smooth (or field, when a file is given), matching,
- * cancel, curl and balance (as `mode` says), split, hodge, round, untangle, extract, finish,
+ * cancel, curl and balance (as `mode` says), split, open, hodge, round, untangle, extract, finish,
  * measure. Change it with qc_pipeline_set, _insert, _remove. options NULL = defaults. Errors:
  * ARGUMENT (densities or a range), NOT_FOUND (a stage is not registered), NOMEM. */
 QC_API qc_status qc_default_pipeline(qc_ctx *ctx, qc_registry *registry,

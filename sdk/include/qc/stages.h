@@ -22,12 +22,14 @@ QC_API extern const qc_stage qc_stage_field_smooth;     /* qc.field.smooth    */
 QC_API extern const qc_stage qc_stage_field_cosine;     /* qc.field.cosine    */
 QC_API extern const qc_stage qc_stage_field_smoothest;  /* qc.field.smoothest */
 QC_API extern const qc_stage qc_stage_field_import;     /* qc.field.import    */
+QC_API extern const qc_stage qc_stage_field_scalar;     /* qc.field.scalar   */
 QC_API extern const qc_stage qc_stage_matching;         /* qc.matching        */
 QC_API extern const qc_stage qc_stage_optimize_merge;   /* qc.optimize.merge */
 QC_API extern const qc_stage qc_stage_optimize_cancel;  /* qc.optimize.cancel */
 QC_API extern const qc_stage qc_stage_optimize_curl;    /* qc.optimize.curl */
 QC_API extern const qc_stage qc_stage_optimize_balance; /* qc.optimize.balance */
 QC_API extern const qc_stage qc_stage_split;            /* qc.split           */
+QC_API extern const qc_stage qc_stage_open;             /* qc.open           */
 QC_API extern const qc_stage qc_stage_hodge;            /* qc.hodge           */
 QC_API extern const qc_stage qc_stage_round;            /* qc.round           */
 QC_API extern const qc_stage qc_stage_untangle;         /* qc.untangle        */

@@ -99,6 +99,7 @@ void qc__cells_free(qc__cells *cells) {
     qc__free(cells->face);
     qc__free(cells->left);
     qc__free(cells->keep);
+    qc__free(cells->rim_pole);
     qc__free(cells->contact_first);
     qc__free(cells->contact);
     qc__pieces_free(&cells->pieces);

@@ -63,7 +63,7 @@ static void keep_covered(choice *s) {
         const qc__piece *p = piece_of(s, cell);
         /* a corner of the surface which holds the centre of the square covers a quarter */
         if (p->middle) limit = fmin(limit, 0.25);
-        c->keep[cell] = p->disk && p->area >= limit - 1e-9;
+        c->keep[cell] = s->l->pole[i] < 0 && p->disk && p->area >= limit - 1e-9;
     }
 }
 
@@ -114,7 +114,7 @@ static qc_status keep_bridges(qc_ctx *ctx, choice *s) {
         bool wanted = false;
         for (int32_t j = s->l->first[i]; j < s->l->first[i + 1]; j++)
             wanted |= s->l->bridge[s->l->met[j]] != 0;
-        if (wanted && !c->keep[cell] && p->disk && p->area >= least_bridge)
+        if (wanted && s->l->pole[i] < 0 && !c->keep[cell] && p->disk && p->area >= least_bridge)
             rank[n++] = (ranked){p->area, cell};
     }
     qsort(rank, (size_t)n, sizeof *rank, by_area);

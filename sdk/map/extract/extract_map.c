@@ -47,15 +47,15 @@ static qc_status accept(qc_ctx *ctx, const qc_mesh *m, const qc_polygon_mesh *q)
                         (int)t.non_manifold_vertices, (int)t.duplicate_faces,
                         (int)t.degenerate_faces);
     }
-    if (t.components == m->n_components && t.boundary_loops == m->n_boundary_loops &&
-        t.euler == m->euler)
+    const int32_t loops = m->n_boundary_loops - m->n_poles, euler = m->euler + m->n_poles;
+    if (t.components == m->n_components && t.boundary_loops == loops && t.euler == euler)
         return QC_OK;
     return qc__fail(ctx, QC_ERR_FAILED, -1,
                     "the quad mesh has %d components, %d boundary loops and Euler characteristic "
                     "%d, the surface %d, %d and %d: something is narrower than a quad; try a finer "
                     "density",
                     (int)t.components, (int)t.boundary_loops, (int)t.euler, (int)m->n_components,
-                    (int)m->n_boundary_loops, (int)m->euler);
+                    (int)loops, (int)euler);
 }
 
 static qc_status extract(qc_ctx *ctx, const qc_grid_map *grid, qc__lattice *lattice,

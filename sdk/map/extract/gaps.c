@@ -46,6 +46,25 @@ static int64_t collect_met(const qc__cells *c, const qc__loops *l, int32_t *met,
     return n;
 }
 
+/* pole[i] of each open cell. */
+static qc_status find_poles(qc_ctx *ctx, const qc_mesh *m, int32_t n_open, qc__loops *l) {
+    int32_t *of_loop = QC__NEW(ctx, int32_t, l->n);
+    l->pole = QC__NEW(ctx, int32_t, n_open);
+    const qc_status status = of_loop && l->pole ? QC_OK : QC_ERR_NOMEM;
+    if (status == QC_OK) {
+        for (int32_t i = 0; i < l->n; i++) of_loop[i] = -1;
+        for (int32_t i = 0; i < m->n_poles; i++)
+            of_loop[l->of_edge[m->halfedge_edge[qc_next(m->pole_corner[m->pole_start[i]])]]] = i;
+        for (int32_t i = 0; i < n_open; i++) {
+            l->pole[i] = -1;
+            for (int32_t j = l->first[i]; j < l->first[i + 1] && l->pole[i] < 0; j++)
+                l->pole[i] = of_loop[l->met[j]];
+        }
+    }
+    qc__free(of_loop);
+    return status;
+}
+
 qc_status qc__loops_create(qc_ctx *ctx, const qc__cells *cells, qc__loops *out) {
     const qc_mesh *m = cells->pieces.ports->lattice->g->mesh;
     const int32_t n_open = cells->n - cells->n_complete;
@@ -71,10 +90,12 @@ qc_status qc__loops_create(qc_ctx *ctx, const qc__cells *cells, qc__loops *out) 
             n = collect_met(cells, &l, l.met, n, i);
         }
         l.first[n_open] = (int32_t)n;
-        *out = l;
-    } else {
-        qc__loops_free(&l);
+        status = find_poles(ctx, m, n_open, &l);
     }
+    if (status == QC_OK)
+        *out = l;
+    else
+        qc__loops_free(&l);
     return status;
 }
 
@@ -85,6 +106,7 @@ void qc__loops_free(qc__loops *l) {
     qc__free(l->met);
     qc__free(l->limit);
     qc__free(l->bridge);
+    qc__free(l->pole);
     *l = (qc__loops){0};
 }
 

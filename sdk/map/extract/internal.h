@@ -125,6 +125,8 @@ typedef struct qc__cells {
     int32_t *face;          /* n: a face of the cell */
     int32_t *left;          /* ports->n: side along a port, of a complete cell; -1 = none */
     uint8_t *keep;          /* n: becomes a quad */
+    int32_t *rim_pole;      /* 4 n: the pole whose hole is across a side of a kept cell, -1; NULL
+                               without poles */
     int32_t *contact_first; /* open cells + 1 */
     int32_t *contact;       /* 2 each: side of the open cell, side of the other cell   */
     int64_t n_contacts, contact_capacity; /* pairs */
@@ -160,6 +162,7 @@ typedef struct qc__loops {
     int32_t *met;     /* loops met by each open cell */
     double *limit;    /* n: least coverage of cells on the loop which are kept */
     uint8_t *bridge;  /* n: cells which hang on a vertex are to be joined */
+    int32_t *pole;    /* open cells: a pole whose hole the cell meets, which is not kept then; -1 */
 } qc__loops;
 qc_status qc__loops_create(qc_ctx *ctx, const qc__cells *cells, qc__loops *out);
 void qc__loops_free(qc__loops *loops);
@@ -169,7 +172,7 @@ qc_status qc__loops_gaps(qc_ctx *ctx, const qc__ports *ports, const qc__cells *c
 /* Sets keep and across from the limits of the loops. set: 4 n, corners joined (sets). */
 qc_status qc__choose(qc_ctx *ctx, qc__cells *cells, const qc__loops *loops, int32_t *set);
 
-/* --- result (vertices.c, place.c, quads.c) ------------------------------- */
+/* --- result (vertices.c, place.c, close.c, quads.c) ------------------------------- */
 
 /* Output vertex of each corner of the kept cells: corners which cells share across their sides.
  * vertex: 4 n, -1 = not kept. *n_lattice of the *n_vertices, the first ones, are lattice vertices.
@@ -184,6 +187,9 @@ qc_status qc__place_rim(qc_ctx *ctx, const qc__cells *cells, const int32_t *vert
  * isolines may cut it. */
 qc_status qc__feature_sides(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
                             int32_t *side, int32_t *source, int32_t *n);
+/* Closes the holes of poles with quads; vertex: as above. */
+qc_status qc__close_poles(qc_ctx *ctx, const qc__cells *cells, const int32_t *vertex,
+                          qc_polygon_mesh **quads);
 qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *ports, const qc__cells *cells,
                            qc_polygon_mesh **out);
 

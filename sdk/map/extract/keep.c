@@ -185,6 +185,21 @@ static qc_status search(keeper *k) {
     return verify(k);
 }
 
+/* Which sides of the kept cells look at the hole of a pole. */
+static qc_status mark_poles(keeper *k) {
+    qc__cells *c = k->cells;
+    if (k->mesh->n_poles == 0) return QC_OK;
+    c->rim_pole = QC__NEW(k->ctx, int32_t, 4 * (int64_t)c->n);
+    if (!c->rim_pole) return QC_ERR_NOMEM;
+    for (int32_t a = 0; a < 4 * c->n; a++) c->rim_pole[a] = -1;
+    for (int32_t i = 0; i < c->n - c->n_complete; i++)
+        for (int32_t j = c->contact_first[i]; j < c->contact_first[i + 1]; j++) {
+            const int32_t side = c->contact[2 * (int64_t)j + 1];
+            if (c->keep[side / 4] && c->across[side] < 0) c->rim_pole[side] = k->loops.pole[i];
+        }
+    return QC_OK;
+}
+
 qc_status qc__cells_keep(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells) {
     keeper k = {.ctx = ctx, .ports = ports, .mesh = ports->lattice->g->mesh, .cells = cells};
     const int64_t n_scratch = 4 * (int64_t)cells->n + k.mesh->n_components + k.mesh->n_edges;
@@ -201,6 +216,7 @@ qc_status qc__cells_keep(qc_ctx *ctx, const qc__ports *ports, qc__cells *cells) 
                                                                                    : QC_ERR_NOMEM;
     }
     if (status == QC_OK) status = search(&k);
+    if (status == QC_OK) status = mark_poles(&k);
     qc__loops_free(&k.loops);
     qc__free(k.component);
     qc__free(k.corner_set);

@@ -64,6 +64,8 @@ qc_status qc__quads_create(qc_ctx *ctx, const qc__ports *p, const qc__cells *c,
                                         QC_POLYGON_SOURCE, &q);
     if (status == QC_OK && n_lines > 0) status = fill_lines(ctx, p, c, vertex, q);
     if (status == QC_OK) status = fill(ctx, p, c, vertex, n_lattice, q);
+    if (status == QC_OK && p->lattice->g->mesh->n_poles > 0)
+        status = qc__close_poles(ctx, c, vertex, &q);
     if (status == QC_OK)
         *out = q;
     else

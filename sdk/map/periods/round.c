@@ -287,7 +287,7 @@ static qc_status make_period_matrix(rounding *r) {
     qc__range_end(r->ctx, outer);
     if (status != QC_OK) return status;
     return qc__separation_create(r->ctx, r->seams, REACH * r->seamless->sizing->edge_length,
-                                 &r->separation);
+                                 r->seamless->matching->pole_index4, &r->separation);
 }
 
 /* The frame field in combed charts. */

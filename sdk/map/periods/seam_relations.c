@@ -38,6 +38,7 @@ int32_t qc__seams_component(const qc__seams *s, int32_t symbol) {
 double qc__seams_shift(const qc__seams *s, int32_t symbol, double _Complex w) {
     const int32_t j = symbol / 2, level = symbol - qc__level_symbol(s, 0);
     if (level >= 0) return s->level_coordinate[level] % 2 ? cimag(w) : creal(w);
+    if (j >= s->n_segments + s->n_cones) return 0; /* a pole */
     const double _Complex change = j < s->n_segments ? w - qc__turn(w, s->segment_turn[j]) : w;
     return symbol % 2 ? cimag(change) : creal(change);
 }
@@ -97,7 +98,7 @@ static void grow_forest(solver *q) {
     grow_tree(q, 0);
     for (int32_t pass = 0; pass < 2; pass++)
         for (int32_t n = 0; n < s->n_nodes; n++) {
-            const int32_t v = s->node_vertex[n], cone = s->vertex_cone[v];
+            const int32_t v = s->node_vertex[n], cone = s->node_cone[n];
             if (q->visited[v]) continue;
             if (pass == 0 && (cone < 0 || s->cone_turn[cone] % 2 == 0)) continue;
             const int32_t from = q->n_order;
@@ -130,7 +131,7 @@ static void append(solver *q, int32_t j, int32_t turn, int32_t part, int64_t val
 /* One part of the relation of node n. */
 static qc_status add_closing(solver *q, int32_t n, int32_t part, int32_t prefer, int32_t *pivot) {
     const qc__seams *s = q->s;
-    const int32_t cone = s->vertex_cone[s->node_vertex[n]];
+    const int32_t cone = s->node_cone[n];
     q->n_values = 0;
     for (int64_t i = s->closing_start[n]; i < s->closing_start[n + 1]; i++)
         append(q, s->closing_segment[i], s->closing_turn[i], part, 1);

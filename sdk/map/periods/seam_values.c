@@ -62,8 +62,19 @@ double _Complex qc__seams_value_at(const qc__seams *s, const qc_complex *f, int3
     return qc__complex(f[c]);
 }
 
-/* Values of the symbols in the map: positions of points, translations across segments, levels at
- * one place. */
+/* d / (1 - i), d the shift of the chart around a pole; symbol: the translations. */
+static double _Complex pole_value(const qc__seams *s, int32_t pole, const double *symbol) {
+    const int32_t node = s->n_nodes - s->n_poles + pole;
+    double _Complex d = 0;
+    for (int64_t i = s->closing_start[node]; i < s->closing_start[node + 1]; i++) {
+        const double *tau = symbol + qc__translation_symbol(s->closing_segment[i], 0);
+        d += qc__turn(tau[0] + tau[1] * I, s->closing_turn[i]);
+    }
+    return d / (1.0 - I);
+}
+
+/* Values of the symbols in the map: positions of points, translations across segments, values of
+ * poles, levels at one place. */
 static void measure_symbols(const qc__seams *s, const qc_complex *f, double *symbol) {
     for (int32_t e = 0; e < s->mesh->n_edges; e++) {
         const int32_t k = s->edge_segment[e];
@@ -75,8 +86,9 @@ static void measure_symbols(const qc__seams *s, const qc_complex *f, double *sym
         symbol[qc__translation_symbol(k, 0)] = creal(tau);
         symbol[qc__translation_symbol(k, 1)] = cimag(tau);
     }
-    for (int32_t i = 0; i < s->n_cones; i++) {
-        const double _Complex p = qc__seams_value_at(s, f, s->cone_vertex[i]);
+    for (int32_t i = 0; i < s->n_cones + s->n_poles; i++) {
+        const double _Complex p = i < s->n_cones ? qc__seams_value_at(s, f, s->cone_vertex[i])
+                                                 : pole_value(s, i - s->n_cones, symbol);
         symbol[qc__position_symbol(s, i, 0)] = creal(p);
         symbol[qc__position_symbol(s, i, 1)] = cimag(p);
     }

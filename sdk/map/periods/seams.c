@@ -19,6 +19,8 @@ void qc__seams_free(qc__seams *s) {
                             s->term_turn,
                             s->node_vertex,
                             s->closing_start,
+                            s->node_cone,
+                            s->cone_pole,
                             s->closing_segment,
                             s->closing_turn,
                             s->vertex_given,
@@ -43,6 +45,7 @@ typedef struct builder {
     const uint8_t *cut;
     const int8_t *face_turn;
     int32_t *degree; /* cut edges at each vertex */
+    int32_t *hole;   /* n_vertices: the pole whose hole a boundary vertex is on, -1 */
     qc__seams *s;
 } builder;
 
@@ -61,9 +64,10 @@ static qc_status number_points(builder *b, const uint8_t *point) {
     s->vertex_cone = QC__NEW(b->ctx, int32_t, mesh->n_vertices);
     if (!s->vertex_cone) return QC_ERR_NOMEM;
     for (int32_t v = 0; v < mesh->n_vertices; v++) s->vertex_cone[v] = point[v] ? s->n_cones++ : -1;
-    s->cone_vertex = QC__NEW(b->ctx, int32_t, s->n_cones);
-    s->cone_turn = QC__ZERO(b->ctx, int8_t, s->n_cones);
-    if (!s->cone_vertex || !s->cone_turn) return QC_ERR_NOMEM;
+    s->cone_vertex = QC__NEW(b->ctx, int32_t, s->n_cones + mesh->n_poles);
+    s->cone_turn = QC__ZERO(b->ctx, int8_t, s->n_cones + mesh->n_poles);
+    s->cone_pole = QC__NEW(b->ctx, int32_t, mesh->n_poles);
+    if (!s->cone_vertex || !s->cone_turn || !s->cone_pole) return QC_ERR_NOMEM;
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         if (s->vertex_cone[v] >= 0) s->cone_vertex[s->vertex_cone[v]] = v;
     return QC_OK;
@@ -81,6 +85,39 @@ static qc_status find_points(builder *b, const int32_t *index4, const qc__featur
     qc__free(shift);
     qc__free(point);
     return status;
+}
+
+static int32_t first_tip(const qc_mesh *mesh, int32_t pole) {
+    return mesh->face_vertex[mesh->pole_corner[mesh->pole_start[pole]]];
+}
+
+/* The poles at which segments end, and the vertices of their holes. */
+static qc_status find_poles(builder *b) {
+    const qc_mesh *mesh = b->cover->mesh;
+    qc__seams *s = b->s;
+    b->hole = QC__NEW(b->ctx, int32_t, mesh->n_vertices);
+    if (!b->hole) return QC_ERR_NOMEM;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) b->hole[v] = -1;
+    for (int32_t i = 0; i < mesh->n_poles; i++) {
+        int32_t ends = 0;
+        for (int32_t j = mesh->pole_start[i]; j < mesh->pole_start[i + 1]; j++) {
+            const int32_t c = mesh->pole_corner[j];
+            const int32_t tip = mesh->face_vertex[c], link = mesh->face_vertex[qc_prev(c)];
+            b->hole[tip] = b->hole[link] = i;
+            ends += b->degree[tip] + b->degree[link];
+        }
+        if (ends == 0) continue; /* the shift around it is zero whatever the map */
+        const int32_t k = s->n_cones + s->n_poles;
+        s->cone_vertex[k] = first_tip(mesh, i);
+        s->cone_turn[k] = 1;
+        s->cone_pole[s->n_poles++] = i;
+    }
+    return QC_OK;
+}
+
+/* What a segment that ends at vertex v is incident with. */
+static int32_t node_of(const builder *b, int32_t v) {
+    return b->hole[v] < 0 ? v : first_tip(b->cover->mesh, b->hole[v]);
 }
 
 static qc_status count_degrees(builder *b) {
@@ -109,13 +146,13 @@ static void trace_segment(builder *b, int32_t h, int32_t k) {
     const qc_mesh *mesh = b->cover->mesh;
     qc__seams *s = b->s;
     const int32_t first = h;
-    s->segment_node[2 * k] = qc_halfedge_start(mesh, h);
+    s->segment_node[2 * k] = node_of(b, qc_halfedge_start(mesh, h));
     s->segment_turn[k] = (int8_t)qc__combed_rotation(b->cover, b->face_turn, h);
     for (;;) {
         s->edge_segment[mesh->halfedge_edge[h]] = k;
         s->edge_left[mesh->halfedge_edge[h]] = h;
         const int32_t v = qc_halfedge_end(mesh, h);
-        s->segment_node[2 * k + 1] = v;
+        s->segment_node[2 * k + 1] = node_of(b, v);
         if (is_node(b, v)) return;
         h = next_on_segment(b, h);
         if (h == first) return;
@@ -240,12 +277,24 @@ static bool walk_vertex(builder *b, int32_t v, qc__walk *w) {
     return true;
 }
 
-static bool record_closing(builder *b, int32_t v, const qc__walk *w) {
+static bool record_closing(builder *b, int32_t v, int32_t cone, const qc__walk *w) {
     qc__seams *s = b->s;
     s->node_vertex[s->n_nodes] = v;
+    s->node_cone[s->n_nodes] = cone;
     s->closing_start[s->n_nodes++] = s->n_closing_terms;
     return append_terms(b->ctx, w, &s->closing_segment, &s->closing_turn, &s->n_closing_terms,
                         &s->closing_capacity);
+}
+
+/* Once around the hole of a pole, from tip to tip about the vertices between. */
+static bool walk_pole(builder *b, int32_t pole, qc__walk *w) {
+    const qc_mesh *mesh = b->cover->mesh;
+    w->turn = w->n = 0;
+    for (int32_t j = mesh->pole_start[pole]; j < mesh->pole_start[pole + 1]; j++)
+        for (int32_t c = qc_prev(mesh->pole_corner[j]); mesh->twin[qc_next(c)] >= 0;
+             c = qc_corner_ccw(mesh, c))
+            if (is_cut(b, qc_next(c)) && !qc__walk_cross(b->ctx, b->s, w, qc_next(c))) return false;
+    return true;
 }
 
 static qc_status make_wedges(builder *b) {
@@ -261,10 +310,12 @@ static qc_status make_wedges(builder *b) {
     s->corner_wedge = QC__NEW(b->ctx, int32_t, 3 * (int64_t)mesh->n_faces);
     s->wedge_turn = QC__NEW(b->ctx, int8_t, most);
     s->wedge_start = QC__NEW(b->ctx, int64_t, most + 1);
+    nodes += s->n_poles;
     s->node_vertex = QC__NEW(b->ctx, int32_t, nodes);
+    s->node_cone = QC__NEW(b->ctx, int32_t, nodes);
     s->closing_start = QC__NEW(b->ctx, int64_t, nodes + 1);
     if (!s->vertex_wedge || !s->corner_wedge || !s->wedge_turn || !s->wedge_start ||
-        !s->node_vertex || !s->closing_start)
+        !s->node_vertex || !s->node_cone || !s->closing_start)
         return QC_ERR_NOMEM;
     qc__walk w = {0};
     qc_status status = QC_OK;
@@ -273,7 +324,13 @@ static qc_status make_wedges(builder *b) {
         if (!walk_vertex(b, v, &w)) status = QC_ERR_NOMEM;
         if (status != QC_OK || qc_vertex_on_boundary(mesh, v)) continue;
         if (s->vertex_cone[v] >= 0) s->cone_turn[s->vertex_cone[v]] = (int8_t)(w.turn & 3);
-        if (is_node(b, v) && !record_closing(b, v, &w)) status = QC_ERR_NOMEM;
+        if (is_node(b, v) && !record_closing(b, v, s->vertex_cone[v], &w)) status = QC_ERR_NOMEM;
+    }
+    for (int32_t i = 0; i < s->n_poles && status == QC_OK; i++) {
+        const int32_t cone = s->n_cones + i;
+        if (!walk_pole(b, s->cone_pole[i], &w) ||
+            !record_closing(b, s->cone_vertex[cone], cone, &w))
+            status = QC_ERR_NOMEM;
     }
     s->vertex_wedge[mesh->n_vertices] = s->n_wedges;
     s->wedge_start[s->n_wedges] = s->n_terms;
@@ -289,13 +346,15 @@ qc_status qc__seams_create(qc_ctx *ctx, const qc_cover *cover, const uint8_t *cu
     if (!s) return QC_ERR_NOMEM;
     s->mesh = cover->mesh;
     const qc__features features = {cover, face_turn, axis};
-    builder b = {ctx, cover, cut, face_turn, NULL, s};
+    builder b = {.ctx = ctx, .cover = cover, .cut = cut, .face_turn = face_turn, .s = s};
     qc_status status = find_points(&b, index4, &features);
     if (status == QC_OK) status = count_degrees(&b);
+    if (status == QC_OK) status = find_poles(&b);
     if (status == QC_OK) status = trace_segments(&b);
     if (status == QC_OK) status = make_wedges(&b);
     if (status == QC_OK) status = qc__seams_find_given(ctx, s, &features);
     qc__free(b.degree);
+    qc__free(b.hole);
     if (status != QC_OK) {
         qc__seams_free(s);
         return status;

@@ -12,7 +12,12 @@
  * features) lie on lattice points, and the coordinate across a feature has one value, the level, on
  * the whole chain. The translations and positions, real and imaginary parts apart, and the levels
  * are the symbols. They satisfy integer relations; solving them (relations.h) leaves the free
- * variables y, which are the periods to be rounded: (4.1) counts them. */
+ * variables y, which are the periods to be rounded: (4.1) counts them.
+ *
+ * A pole (qc_mesh) is a node, too. Going once around it the chart is shifted by d, the sum of the
+ * translations of the segments which end there; quads close it when d_u + d_v is even, which is to
+ * say d = (1 - i) p with a Gaussian integer p. So p joins the symbols like the position of a cone
+ * of one quarter turn, which no vertex has and no shift changes (docs/theory/poles.md). */
 #ifndef QC_MAP_SEAMS_H
 #define QC_MAP_SEAMS_H
 
@@ -28,12 +33,15 @@ typedef struct qc__seams {
     int32_t *edge_segment; /* n_edges, -1 = not on the cut graph */
     int32_t *edge_left; /* n_edges, the halfedge on the left side, along the segment              */
     int8_t *segment_turn;  /* rho_k  */
-    int32_t *segment_node; /* 2 n_segments: start and end vertex */
-    /* points: cones, interior vertices of non-zero index, and corners of features */
-    int32_t n_cones;
-    int32_t *cone_vertex; /* n_cones */
+    int32_t *segment_node; /* 2 n_segments: start and end vertex; of a pole its first tip */
+    /* points: cones, interior vertices of non-zero index, and corners of features; after them the
+     * poles where segments end */
+    int32_t n_cones, n_poles;
+    int32_t *cone_vertex; /* n_cones + n_poles */
     int32_t *vertex_cone; /* n_vertices, -1 */
-    int8_t *cone_turn;    /* R: quarter turns once around, 0..3; 0 on the boundary */
+    int8_t *cone_turn;    /* n_cones + n_poles: R, quarter turns once around, 0..3; 0 on the
+                             boundary, 1 for poles */
+    int32_t *cone_pole;   /* n_poles: number in the mesh */
     /* levels: one coordinate x = 2 v + c (c = 0 re, 1 im of F_v) of each, and relations between
      * them and the other symbols, sum value * symbol = 0 */
     int32_t n_levels;
@@ -50,9 +58,11 @@ typedef struct qc__seams {
     int32_t *term_segment; /* ... segment k */
     int8_t *term_turn; /* ... b                                                                  */
     int64_t n_terms, term_capacity;
-    /* a closing walk about each interior node, terms as above: sum = (1 - i^R) p */
+    /* a closing walk about each interior node and then each pole, terms as above: sum = (1 - i^R) p
+     */
     int32_t n_nodes;
     int32_t *node_vertex;   /* n_nodes */
+    int32_t *node_cone;     /* n_nodes: cone or pole there, -1 */
     int64_t *closing_start; /* n_nodes + 1, into closing_segment/turn */
     int32_t *closing_segment;
     int8_t *closing_turn;
@@ -71,13 +81,13 @@ typedef struct qc__seams {
     qc__rows free_row;        /* n_free + n_fixed: y = sum of value * symbol */
 } qc__seams;
 
-/* Real symbols: parts re, im of the translations, then of the positions of the points, then the
- * levels. */
+/* Real symbols: parts re, im of the translations, then of the positions of the points, then of
+ * the p of the poles, then the levels. */
 static inline int32_t qc__seams_symbols(const qc__seams *s) {
-    return 2 * (s->n_segments + s->n_cones) + s->n_levels;
+    return 2 * (s->n_segments + s->n_cones + s->n_poles) + s->n_levels;
 }
 static inline int32_t qc__level_symbol(const qc__seams *s, int32_t level) {
-    return 2 * (s->n_segments + s->n_cones) + level;
+    return 2 * (s->n_segments + s->n_cones + s->n_poles) + level;
 }
 static inline int32_t qc__translation_symbol(int32_t segment, int32_t part) {
     return 2 * segment + part;

@@ -215,10 +215,26 @@ static qc_status store_form(finder *f, qc__separation *s, int32_t pair) {
     return QC_OK;
 }
 
+/* d = (1 - i) p, in units which make the shifts by less than four lines shorter than half. */
+static qc_status make_pole_forms(finder *f, const int32_t *pole_index4, qc__separation *s) {
+    static const double unit = 0.2;
+    const qc__seams *seams = f->seams;
+    qc_status status = QC_OK;
+    for (int32_t i = 0; i < seams->n_poles && pole_index4 && status == QC_OK; i++) {
+        if (pole_index4[seams->cone_pole[i]] != 4) continue;
+        const int32_t p = qc__position_symbol(seams, seams->n_cones + i, 0);
+        s->cone[2 * (int64_t)s->n] = s->cone[2 * (int64_t)s->n + 1] = -1;
+        add_symbol(f, p, unit * (1.0 - I));
+        add_symbol(f, p + 1, unit * (1.0 + I));
+        status = store_form(f, s, s->n++);
+    }
+    return status;
+}
+
 static qc_status make_forms(finder *f, qc__separation *s) {
-    const int64_t n = f->n_bridges;
-    s->cone = QC__NEW(f->ctx, int32_t, 2 * n);
-    s->start = QC__ZERO(f->ctx, int64_t, n + 1);
+    const int64_t n = f->n_bridges, most = n + f->seams->n_poles;
+    s->cone = QC__NEW(f->ctx, int32_t, 2 * most);
+    s->start = QC__ZERO(f->ctx, int64_t, most + 1);
     f->sum = QC__ZERO(f->ctx, double _Complex, f->seams->n_free);
     int32_t *path = QC__NEW(f->ctx, int32_t, f->seams->mesh->n_vertices + 1);
     qc__walk walk = {0};
@@ -236,12 +252,13 @@ static qc_status make_forms(finder *f, qc__separation *s) {
 }
 
 qc_status qc__separation_create(qc_ctx *ctx, const qc__seams *seams, double reach,
-                                qc__separation **out) {
+                                const int32_t *pole_index4, qc__separation **out) {
     finder f = {.ctx = ctx, .seams = seams};
     qc__separation *s = QC__ZERO(ctx, qc__separation, 1);
     qc_status status = s ? grow_cells(&f) : QC_ERR_NOMEM;
     if (status == QC_OK) status = find_bridges(&f, reach);
     if (status == QC_OK) status = make_forms(&f, s);
+    if (status == QC_OK) status = make_pole_forms(&f, pole_index4, s);
     qc__free(f.distance);
     qc__free(f.predecessor);
     qc__free(f.cell);

@@ -77,6 +77,11 @@ static void add_matching(const qc_matching *matching, qc_report *report) {
         report->field.singularities++;
         report->field.index4[8 + (i < -8 ? -8 : i > 8 ? 8 : i)]++;
     }
+    for (int32_t i = 0; i < mesh->n_poles && matching->pole_index4; i++) {
+        const int32_t index4 = matching->pole_index4[i];
+        report->field.singularities++;
+        report->field.index4[8 + (index4 > 8 ? 8 : index4)]++;
+    }
 }
 
 qc_status qc_report_measure(qc_ctx *ctx, const qc_mesh *mesh, const qc_sizing *sizing,
@@ -88,7 +93,7 @@ qc_status qc_report_measure(qc_ctx *ctx, const qc_mesh *mesh, const qc_sizing *s
         r.input.vertices = mesh->n_vertices;
         r.input.faces = mesh->n_faces;
         r.input.genus = mesh->genus;
-        r.input.boundaries = mesh->n_boundary_loops;
+        r.input.boundaries = mesh->n_boundary_loops - mesh->n_poles;
         r.input.components = mesh->n_components;
     }
     if (sizing) {

@@ -26,7 +26,7 @@ static problem *problem_create(qc_ctx *ctx, const surface_case *c, double quads,
     p->n = p->seams->n_free;
     p->reach = 3 * p->s->sizing->edge_length;
     must(ctx, qc__periods_create(ctx, p->seams, p->s->stiffness, NULL, &p->periods));
-    must(ctx, qc__separation_create(ctx, p->seams, p->reach, &p->separation));
+    must(ctx, qc__separation_create(ctx, p->seams, p->reach, NULL, &p->separation));
     p->P = ARRAY(double, (int64_t)p->n * p->n);
     p->t = ARRAY(double, p->n);
     must(ctx, qc__period_matrix(ctx, p->periods, p->P));
