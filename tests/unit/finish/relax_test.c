@@ -58,6 +58,22 @@ static void no_quad_gets_worse(void **state) {
     qc_object_release(m);
 }
 
+/* A copy which says that the edges in column i of quad_grid() are on features. */
+static qc_polygon_mesh *with_lines(qc_ctx *ctx, const qc_polygon_mesh *q, int n, int i) {
+    qc_polygon_mesh *copy = NULL;
+    assert_int_equal(
+        qc_polygon_mesh_create(ctx, q->n_vertices, q->n_faces, q->n_corners, 0, n, 0, &copy),
+        QC_OK);
+    memcpy(copy->position, q->position, 3 * sizeof(double) * (size_t)q->n_vertices);
+    memcpy(copy->face_offset, q->face_offset, sizeof(int32_t) * ((size_t)q->n_faces + 1));
+    memcpy(copy->face_vertex, q->face_vertex, sizeof(int32_t) * (size_t)q->n_corners);
+    for (int j = 0; j < n; j++) {
+        copy->line[2 * j] = i * (n + 1) + j;
+        copy->line[2 * j + 1] = i * (n + 1) + j + 1;
+    }
+    return copy;
+}
+
 static void features_are_kept(void **state) {
     enum { N = 8 };
     qc_mesh *flat = grid(*state, 10, 10, 0, 1), *m = NULL;
@@ -80,6 +96,12 @@ static void features_are_kept(void **state) {
     }
     assert_true(moved > 0.01);
     assert_true(skewness(out) < 0.3 * skewness(q));
+    qc_polygon_mesh *known = with_lines(*state, q, N, N / 2);
+    qc_polygon_mesh *same = relax(*state, m, known, features->edge);
+    assert_memory_equal(same->position, out->position, 3 * sizeof(double) * (size_t)q->n_vertices);
+    assert_int_equal(same->n_lines, N);
+    qc_object_release(same);
+    qc_object_release(known);
     qc_object_release(out);
     qc_object_release(features);
     qc_object_release(q);
