@@ -139,7 +139,7 @@ char *cli_stats_json(const qc_report *report, const qc_pipeline *pipeline, const
                      const char *const *warnings);
 /* Ratios of a report. */
 typedef struct cli_figures {
-    double rsd_edge, rsd_angle, hausdorff_rel, mean_dist_rel, arap_mean;
+    double rsd_edge, rsd_angle, hausdorff_rel, mean_dist_rel, feature_distance_rel, arap_mean;
 } cli_figures;
 cli_figures cli_report_figures(const qc_report *report);
 

@@ -16,7 +16,7 @@ static double deviation(double n, double sum, double sum2) {
 }
 
 cli_figures cli_report_figures(const qc_report *r) {
-    cli_figures f = {0, 0, 0, 0, 0};
+    cli_figures f = {0, 0, 0, 0, 0, 0};
     if (r->quads.edge_sum > 0)
         f.rsd_edge = 100 * deviation(r->quads.edges, r->quads.edge_sum, r->quads.edge_sum2) *
                      r->quads.edges / r->quads.edge_sum;
@@ -24,6 +24,7 @@ cli_figures cli_report_figures(const qc_report *r) {
         100 * deviation(r->quads.corners, r->quads.angle_sum, r->quads.angle_sum2) / HALF_PI;
     if (r->quads.diagonal > 0) {
         f.hausdorff_rel = r->quads.hausdorff / r->quads.diagonal;
+        f.feature_distance_rel = r->quads.feature_distance / r->quads.diagonal;
         if (r->quads.distance_samples > 0)
             f.mean_dist_rel = r->quads.distance_sum / r->quads.distance_samples / r->quads.diagonal;
     }
@@ -63,14 +64,16 @@ static json_t *energies(const qc_report *r) {
 }
 
 static json_t *quads(const qc_report *r, const cli_figures *f) {
-    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "vertices",
+    return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "vertices",
                      integer(r->quads.vertices), "faces", integer(r->quads.faces), "non_quads",
                      integer(r->quads.non_quads), "irregular", integer(r->quads.irregular), "euler",
                      integer(r->quads.euler), "components", integer(r->quads.components),
                      "boundaries", integer(r->quads.boundaries), "rsd_edge", number(f->rsd_edge),
                      "rsd_angle", number(f->rsd_angle), "min_scaled_jacobian",
                      number(r->quads.min_scaled_jacobian), "hausdorff_rel",
-                     number(f->hausdorff_rel), "mean_dist_rel", number(f->mean_dist_rel));
+                     number(f->hausdorff_rel), "mean_dist_rel", number(f->mean_dist_rel),
+                     "feature_edges", integer(r->quads.feature_edges), "feature_distance_rel",
+                     number(f->feature_distance_rel));
 }
 
 static json_t *seconds(const qc_pipeline *pipeline, const cli_times *times) {

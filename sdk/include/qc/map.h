@@ -201,6 +201,8 @@ typedef struct qc_report {
         double edges, edge_sum, edge_sum2, corners, angle_sum, angle_sum2; /* angles in radians */
         double hausdorff, distance_sum, distance_samples, diagonal; /* lengths                 */
         double min_scaled_jacobian;
+        int64_t feature_edges;   /* lines of the quads                                           */
+        double feature_distance; /* two-sided, of their ends and the vertices of the features    */
     } quads;
 } qc_report;
 QC_API qc_status qc_report_create(qc_ctx *ctx, qc_report **out); /* zeroes */

@@ -66,6 +66,8 @@ void qc_report_add(qc_report *sum, const qc_report *part) {
     sum->quads.hausdorff = fmax(sum->quads.hausdorff, part->quads.hausdorff);
     sum->quads.distance_sum += part->quads.distance_sum;
     sum->quads.distance_samples += part->quads.distance_samples;
+    sum->quads.feature_edges += part->quads.feature_edges;
+    sum->quads.feature_distance = fmax(sum->quads.feature_distance, part->quads.feature_distance);
     sum->quads.diagonal = fmax(sum->quads.diagonal, part->quads.diagonal);
 }
 
@@ -107,6 +109,7 @@ qc_status qc_report_measure(qc_ctx *ctx, const qc_mesh *mesh, const qc_sizing *s
     outer = qc__range_begin(ctx, NULL, 0.2, 0.3);
     if (status == QC_OK && quads) status = qc__report_quads(ctx, quads, &r);
     qc__range_end(ctx, outer);
+    if (status == QC_OK && map && quads) status = qc__report_features(ctx, map, quads, &r);
     if (status == QC_OK && mesh && quads) status = qc__report_distance(ctx, mesh, quads, &r);
     if (status == QC_OK) *report = r;
     return status;

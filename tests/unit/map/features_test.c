@@ -38,6 +38,31 @@ static double feature_length(const qc_grid_map *g) {
     return sum;
 }
 
+static double chain_distance(qc_ctx *ctx, const qc_grid_map *g, const qc_polygon_mesh *q) {
+    qc_corner_map *map = NULL;
+    qc_report *report = NULL;
+    maps_ok(ctx, qc_grid_map_to_corner_map(ctx, g, NULL, &map));
+    maps_ok(ctx, qc_report_create(ctx, &report));
+    maps_ok(ctx, qc_report_measure(ctx, g->mesh, NULL, NULL, map, q, report));
+    assert_int_equal(report->quads.feature_edges, q->n_lines);
+    const double distance = report->quads.feature_distance / g->mesh->diagonal;
+    qc_object_release(map);
+    qc_object_release(report);
+    return distance;
+}
+
+/* In the plane features are straight between the quad vertices: the polylines coincide, and a
+ * vertex which leaves them is noticed. */
+static void assert_chains_coincide(qc_ctx *ctx, const qc_grid_map *g, const qc_polygon_mesh *q) {
+    for (int32_t v = 0; v < g->mesh->n_vertices; v++)
+        if (g->mesh->position[3 * v + 2] != 0) return;
+    assert_true(chain_distance(ctx, g, q) <= 1e-6);
+    double *z = &q->position[3 * q->line[0] + 2];
+    *z = 0.25 * g->mesh->diagonal;
+    assert_true(fabs(chain_distance(ctx, g, q) - 0.25) < 1e-9);
+    *z = 0;
+}
+
 static void assert_quads(qc_ctx *ctx, qc_corner_map *map, int32_t faces, int32_t irregular) {
     qc_grid_map *g = NULL;
     qc_polygon_mesh *q = NULL;
@@ -51,6 +76,7 @@ static void assert_quads(qc_ctx *ctx, qc_corner_map *map, int32_t faces, int32_t
     if (irregular >= 0) assert_int_equal(t.irregular, irregular);
     assert_true((double)q->n_lines == feature_length(g));
     assert_lines_on_features(g, q);
+    assert_chains_coincide(ctx, g, q);
     qc_object_release(q);
     qc_object_release(g);
     qc_object_release(map);
