@@ -1,6 +1,7 @@
 /* The built-in stages and interfaces as arrays; sdk/pipeline reads them through these symbols. */
 #include "sdk/pipeline/builtin.h"
 #include <qc/closest_point.h>
+#include <qc/ray.h>
 #include <qc/solver.h>
 #include <qc/stages.h>
 
@@ -12,4 +13,5 @@ const qc_stage *const qc__builtin_stages[] = {
 
 const qc__offer qc__builtin_interfaces[] = {{QC_SOLVER_ID, &qc_solver_builtin.head},
                                             {QC_CLOSEST_POINT_ID, &qc_closest_point_builtin.head},
+                                            {QC_RAY_CASTER_ID, &qc_ray_caster_builtin.head},
                                             {NULL, NULL}};

@@ -15,7 +15,7 @@ BEGIN {
 function layer(path) {
     sub(/.*\//, "", path); sub(/\.h$/, "", path)
     if (path == "solver") return "sparse"
-    if (path == "closest_point") return "mesh"
+    if (path == "closest_point" || path == "ray") return "mesh"
     return path == "stage" || path == "stages" || path == "plugin" ? "pipeline" : path
 }
 function offence(why) { print $1 ":" $2 ": " $3 " - " why; bad = 1 }

@@ -40,7 +40,7 @@ static int measure(cli_session *session, const settings *s, figures *out) {
     if (status == EXIT_DONE &&
         (qc_polygon_mesh_topology(ctx, quads, &out->topology) != QC_OK ||
          qc_report_create(ctx, &out->report) != QC_OK ||
-         qc_report_measure(ctx, mesh, NULL, NULL, NULL, quads, out->report) != QC_OK))
+         qc_report_measure(ctx, mesh, NULL, NULL, NULL, quads, NULL, out->report) != QC_OK))
         status = cli_session_error(session, s->input, EXIT_FAILED);
     out->valid = is_valid(&out->topology);
     out->against = s->against != NULL;

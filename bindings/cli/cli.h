@@ -117,6 +117,10 @@ int cli_write_text(const char *path, const char *text);
 /* Reads a mesh; EXIT_INPUT on failure. */
 int cli_read_mesh(cli_session *session, const char *path, qc_polygon_mesh **out);
 
+/* Traces the rays of a file onto *mesh, which is replaced by one with the strokes as lines. */
+int cli_add_strokes(cli_session *session, const qc_registry *registry, const char *path,
+                    qc_polygon_mesh **mesh);
+
 /* --- pipelines ----------------------------------------------------------------------------- */
 
 /* Registry with the plugins of the list and of QC_PLUGIN_PATH. */

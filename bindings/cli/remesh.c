@@ -21,7 +21,7 @@ enum { MODE_NONE = 0, MODE_FAST, MODE_RELOCATE, MODE_BEST }; /* none = best */
 static const char *const modes[] = {"", "fast", "relocate", "best", NULL};
 
 typedef struct settings {
-    const char *input, *output, *field, *save_field, *uv, *pipeline, *stats, *report;
+    const char *input, *output, *field, *stroke_rays, *save_field, *uv, *pipeline, *stats, *report;
     double quads, edge_length, edge_length_rel, sharp;
     bool no_features, strict;
     int mode;
@@ -55,6 +55,8 @@ static int parse(int argc, const char **argv, settings *s, cli_arguments *argume
          "use this cross field (.rawfield or .rosy)"},
         {"save-field", 0, CLI_TEXT, &s->save_field, 0, 0, NULL, "F.rawfield",
          "write the cross field"},
+        {"stroke-rays", 0, CLI_TEXT, &s->stroke_rays, 0, 0, NULL, "RAYS.json",
+         "the field follows strokes seen by these camera rays"},
         {"sharp", 0, CLI_REAL, &s->sharp, 1e-6, 180, NULL, "DEG",
          "align to creases sharper than this angle (default 35)"},
         {"no-features", 0, CLI_FLAG, &s->no_features, 0, 0, NULL, NULL,
@@ -199,6 +201,8 @@ static int work(run *r, const settings *s) {
     const double start = cli_seconds();
     int status = build_pipeline(r, s);
     if (status == EXIT_DONE) status = cli_read_mesh(&r->session, s->input, &r->input);
+    if (status == EXIT_DONE && s->stroke_rays)
+        status = cli_add_strokes(&r->session, r->registry, s->stroke_rays, &r->input);
     r->times.read = cli_seconds() - start;
     if (status == EXIT_DONE) status = compute(r, s);
     if (status == EXIT_DONE) status = write_all(r, s);

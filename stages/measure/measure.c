@@ -2,14 +2,21 @@
 #include <qc/map.h>
 #include <qc/stages.h>
 
-static qc_status run(const qc_run *r, const void *params) {
-    (void)params;
+typedef struct params {
+    const char *closest;
+} params;
+static const char *const closest_points[] = {QC_CLOSEST_POINT_ID, NULL};
+
+static qc_status run(const qc_run *r, const void *raw) {
+    const params *p = raw;
     qc_report *report = NULL;
+    const qc_interface *closest = r->find(r, QC_CLOSEST_POINT_ID, p->closest);
+    if (!closest) return QC_ERR_NOT_FOUND;
     qc_status status = qc_report_create(r->ctx, &report);
     if (status == QC_OK)
         status = qc_report_measure(r->ctx, r->input(r, "mesh"), r->input(r, "sizing"),
                                    r->input(r, "matching"), r->input(r, "map"),
-                                   r->input(r, "quads"), report);
+                                   r->input(r, "quads"), (const qc_closest_point *)closest, report);
     if (status == QC_OK) return r->output(r, "report", report);
     qc_object_release(report);
     return status;
@@ -24,6 +31,12 @@ static const qc_port inputs[] = {
 };
 static const qc_port outputs[] = {
     {"report", QC_TYPE_REPORT, 0, "all figures; those of absent inputs are zero"},
+};
+
+static const qc_param table[] = {
+    QC_PARAM_INTERFACE(params, closest, closest_points,
+                       "finds closest points; builtin unless a plugin or the program offers "
+                       "another"),
 };
 
 const qc_stage qc_stage_measure = {
@@ -43,7 +56,7 @@ const qc_stage qc_stage_measure = {
     outputs,
     sizeof inputs / sizeof *inputs,
     sizeof outputs / sizeof *outputs,
-    NULL,
-    0,
-    0,
+    table,
+    sizeof table / sizeof *table,
+    sizeof(params),
     run};

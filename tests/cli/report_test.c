@@ -84,7 +84,7 @@ static void a_flat_grid_is_perfect(void **state) {
     qc_corner_map *map = grid_map(ctx, mesh, 1.0 / N, 1, 1);
     qc_report *r = NULL;
     assert_int_equal(qc_report_create(ctx, &r), QC_OK);
-    assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, map, quads, r), QC_OK);
+    assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, map, quads, NULL, r), QC_OK);
     assert_int_equal(r->quads.faces, N * N);
     assert_int_equal(r->quads.non_quads, 0);
     assert_int_equal(r->quads.irregular, 0);
@@ -115,7 +115,7 @@ static void distortion_is_that_of_the_singular_values(void **state) {
         qc_corner_map *map = grid_map(ctx, mesh, 0.25, a, b);
         qc_report *r = NULL;
         assert_int_equal(qc_report_create(ctx, &r), QC_OK);
-        assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, map, NULL, r), QC_OK);
+        assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, map, NULL, NULL, r), QC_OK);
         assert_true(fabs(r->uv.arap_sum / r->uv.area - (a - 1) * (a - 1) - (b - 1) * (b - 1)) <
                     1e-12);
         assert_int_equal(r->uv.flipped, b < 0 ? mesh->n_faces : 0);
@@ -133,8 +133,8 @@ static void reports_add_up(void **state) {
     assert_int_equal(qc_report_create(ctx, &a), QC_OK);
     assert_int_equal(qc_report_create(ctx, &b), QC_OK);
     assert_int_equal(qc_report_create(ctx, &sum), QC_OK);
-    assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, NULL, near, a), QC_OK);
-    assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, NULL, far, b), QC_OK);
+    assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, NULL, near, NULL, a), QC_OK);
+    assert_int_equal(qc_report_measure(ctx, mesh, NULL, NULL, NULL, far, NULL, b), QC_OK);
     qc_report_add(sum, a);
     qc_report_add(sum, b);
     assert_int_equal(sum->quads.faces, 2 * N * N);

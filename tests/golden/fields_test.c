@@ -47,7 +47,8 @@ static void imported_fields_keep_their_indices(void **state) {
         assert_int_equal(qc_face_field_read(ctx, mesh, test_data(name, path), &field), QC_OK);
         assert_int_equal(qc_matching_create(ctx, field, NULL, &matching), QC_OK);
         assert_int_equal(qc_report_create(ctx, &report), QC_OK);
-        assert_int_equal(qc_report_measure(ctx, mesh, NULL, matching, NULL, NULL, report), QC_OK);
+        assert_int_equal(qc_report_measure(ctx, mesh, NULL, matching, NULL, NULL, NULL, report),
+                         QC_OK);
         check_indices(c, report);
         qc_object_release(report);
         qc_object_release(matching);

@@ -37,6 +37,11 @@ typedef struct qc_closest_point {
 
 QC_API extern const qc_closest_point qc_closest_point_builtin;
 
+/* For backends: squared distance of a point to a triangle (3 corners of 3 numbers, which may
+ * coincide), weight = barycentric coordinates of the closest point, >= 0. Same bits everywhere. */
+QC_API double qc_triangle_distance2(const double corner[9], const double point[3],
+                                    double weight[3]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -6,6 +6,7 @@
 #ifndef QC_MAP_H
 #define QC_MAP_H
 
+#include <qc/closest_point.h>
 #include <qc/field.h>
 
 #ifdef __cplusplus
@@ -208,10 +209,12 @@ typedef struct qc_report {
 QC_API qc_status qc_report_create(qc_ctx *ctx, qc_report **out); /* zeroes */
 QC_API void qc_report_add(qc_report *sum, const qc_report *part);
 /* Fills in what the given objects tell; each may be NULL. quads against mesh gives the distances
- * (sampled at quad vertices, edge midpoints and face centres, and mesh vertices; built-in tree). */
+ * (sampled at quad vertices, edge midpoints and face centres, and mesh vertices) by `closest` (NULL
+ * = builtin). */
 QC_API qc_status qc_report_measure(qc_ctx *ctx, const qc_mesh *mesh, const qc_sizing *sizing,
                                    const qc_matching *matching, const qc_corner_map *map,
-                                   const qc_polygon_mesh *quads, qc_report *report);
+                                   const qc_polygon_mesh *quads, const qc_closest_point *closest,
+                                   qc_report *report);
 
 #ifdef __cplusplus
 }

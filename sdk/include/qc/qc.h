@@ -13,6 +13,7 @@
 #include <qc/optimize.h>
 #include <qc/pipeline.h>
 #include <qc/plugin.h>
+#include <qc/ray.h>
 #include <qc/remesh.h>
 #include <qc/shape.h>
 #include <qc/solver.h>

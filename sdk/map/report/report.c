@@ -88,7 +88,8 @@ static void add_matching(const qc_matching *matching, qc_report *report) {
 
 qc_status qc_report_measure(qc_ctx *ctx, const qc_mesh *mesh, const qc_sizing *sizing,
                             const qc_matching *matching, const qc_corner_map *map,
-                            const qc_polygon_mesh *quads, qc_report *report) {
+                            const qc_polygon_mesh *quads, const qc_closest_point *closest,
+                            qc_report *report) {
     qc_report r = {.object = report->object};
     qc_status status = QC_OK;
     if (mesh) {
@@ -110,7 +111,9 @@ qc_status qc_report_measure(qc_ctx *ctx, const qc_mesh *mesh, const qc_sizing *s
     if (status == QC_OK && quads) status = qc__report_quads(ctx, quads, &r);
     qc__range_end(ctx, outer);
     if (status == QC_OK && map && quads) status = qc__report_features(ctx, map, quads, &r);
-    if (status == QC_OK && mesh && quads) status = qc__report_distance(ctx, mesh, quads, &r);
+    if (status == QC_OK && mesh && quads)
+        status = qc__report_distance(ctx, mesh, quads,
+                                     closest ? closest : &qc_closest_point_builtin, &r);
     if (status == QC_OK) *report = r;
     return status;
 }

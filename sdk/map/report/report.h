@@ -14,6 +14,6 @@ qc_status qc__report_features(qc_ctx *ctx, const qc_corner_map *map, const qc_po
                               qc_report *report);
 /* Distances between quads and mesh. */
 qc_status qc__report_distance(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh *quads,
-                              qc_report *report);
+                              const qc_closest_point *closest, qc_report *report);
 
 #endif

@@ -1,13 +1,13 @@
 /* Two-sided distance between a quad mesh and the surface it was made from: sampled at the vertices,
  * edge midpoints and face centres of the quads, and at the vertices of the mesh. */
 #include <math.h>
-#include <qc/closest_point.h>
 
 #include "sdk/map/report/report.h"
 
 enum { CHUNK = 256, BATCH = 1 << 16 };
 
 typedef struct query {
+    const qc_closest_point *closest;
     const qc_closest_tree *tree;
     const double *point;
     double *distance;
@@ -19,16 +19,16 @@ static void run_queries(void *arg, int64_t begin, int64_t end, uint32_t worker) 
     double weight[3];
     (void)worker;
     for (int64_t i = begin; i < end; i++)
-        q->distance[i] =
-            qc_closest_point_builtin.query(q->tree, q->point + 3 * i, &nearest, weight);
+        q->distance[i] = q->closest->query(q->tree, q->point + 3 * i, &nearest, weight);
 }
 
 /* distance[i] of point i to the nearest triangle. */
-static qc_status distances(qc_ctx *ctx, const qc_closest_tree *tree, int64_t n, const double *point,
+static qc_status distances(qc_ctx *ctx, const qc_closest_point *closest,
+                           const qc_closest_tree *tree, int64_t n, const double *point,
                            double *distance) {
     for (int64_t at = 0; at < n; at += BATCH) {
         if (!qc__progress(ctx, (double)at / (double)n)) return QC_ERR_CANCELLED;
-        query q = {tree, point + 3 * at, distance + at};
+        query q = {closest, tree, point + 3 * at, distance + at};
         qc__parallel_for(ctx, n - at < BATCH ? n - at : BATCH, CHUNK, run_queries, &q);
     }
     return QC_OK;
@@ -69,15 +69,15 @@ static void sample(const qc_polygon_mesh *quads, double *point) {
 }
 
 /* Adds the distances of n points to a triangle list. */
-static qc_status add(qc_ctx *ctx, int32_t n_triangles, const double *position,
-                     const int32_t *vertex, int64_t n, const double *point, qc_report *report) {
-    const qc_closest_point *closest = &qc_closest_point_builtin;
+static qc_status add(qc_ctx *ctx, const qc_closest_point *closest, int32_t n_triangles,
+                     const double *position, const int32_t *vertex, int64_t n, const double *point,
+                     qc_report *report) {
     qc_closest_tree *tree = NULL;
     double *distance = QC__NEW(ctx, double, n);
     qc_status status = distance ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK)
         status = closest->build(closest, ctx, n_triangles, position, vertex, &tree);
-    if (status == QC_OK) status = distances(ctx, tree, n, point, distance);
+    if (status == QC_OK) status = distances(ctx, closest, tree, n, point, distance);
     if (status == QC_OK) {
         for (int64_t i = 0; i < n; i++) {
             report->quads.hausdorff = fmax(report->quads.hausdorff, distance[i]);
@@ -91,7 +91,7 @@ static qc_status add(qc_ctx *ctx, int32_t n_triangles, const double *position,
 }
 
 qc_status qc__report_distance(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh *quads,
-                              qc_report *report) {
+                              const qc_closest_point *closest, qc_report *report) {
     const int64_t n_triangles = (int64_t)quads->n_corners - 2 * (int64_t)quads->n_faces;
     const int64_t n = (int64_t)quads->n_vertices + quads->n_corners + quads->n_faces;
     if (n_triangles < 1) return QC_OK;
@@ -103,12 +103,13 @@ qc_status qc__report_distance(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon
         sample(quads, point);
         report->quads.diagonal = mesh->diagonal;
         qc__range outer = qc__range_begin(ctx, NULL, 0.3, 0.8);
-        status = add(ctx, mesh->n_faces, mesh->position, mesh->face_vertex, n, point, report);
+        status =
+            add(ctx, closest, mesh->n_faces, mesh->position, mesh->face_vertex, n, point, report);
         qc__range_end(ctx, outer);
     }
     if (status == QC_OK) {
         qc__range outer = qc__range_begin(ctx, NULL, 0.8, 1.0);
-        status = add(ctx, (int32_t)n_triangles, quads->position, vertex, mesh->n_vertices,
+        status = add(ctx, closest, (int32_t)n_triangles, quads->position, vertex, mesh->n_vertices,
                      mesh->position, report);
         qc__range_end(ctx, outer);
     }

@@ -6,12 +6,14 @@
 
 enum { LEAST_FACES = 4 }; /* of a component: the tetrahedron is the smallest closed surface */
 
-/* Vertices of the input which neither live on nor were merged with another one. */
+/* Vertices of the input which neither live on nor were merged with another one, nor belong to a
+ * line. */
 static qc_status note_unreferenced(qc__repair *r) {
     uint8_t *used = QC__ZERO(r->ctx, uint8_t, r->soup->n_vertices);
     if (!used) return QC_ERR_NOMEM;
     for (int32_t c = 0; c < 3 * r->n_faces; c++)
         if (r->triangle[c - c % 3] >= 0) used[r->source_vertex[r->triangle[c]]] = 1;
+    for (int32_t i = 0; r->soup->line && i < 2 * r->soup->n_lines; i++) used[r->soup->line[i]] = 1;
     for (int32_t v = 0; v < r->soup->n_vertices; v++)
         if (!used[v] && !r->merged[v]) qc__repair_note(r, QC_REPAIR_UNREFERENCED, v);
     qc__free(used);

@@ -253,7 +253,7 @@ static void boundary_is_followed(void **state) {
         assert_in_range(q->n_faces, 390, 410);
         qc_report *report = NULL;
         maps_ok(ctx, qc_report_create(ctx, &report));
-        maps_ok(ctx, qc_report_measure(ctx, mesh, NULL, NULL, NULL, q, report));
+        maps_ok(ctx, qc_report_measure(ctx, mesh, NULL, NULL, NULL, q, NULL, report));
 
         assert_true(report->quads.hausdorff < 0.75);
         assert_true(report->quads.min_scaled_jacobian > -0.01);
