@@ -43,7 +43,7 @@ static double chain_distance(qc_ctx *ctx, const qc_grid_map *g, const qc_polygon
     qc_report *report = NULL;
     maps_ok(ctx, qc_grid_map_to_corner_map(ctx, g, NULL, &map));
     maps_ok(ctx, qc_report_create(ctx, &report));
-    maps_ok(ctx, qc_report_measure(ctx, g->mesh, NULL, NULL, map, q, report));
+    maps_ok(ctx, qc_report_measure(ctx, g->mesh, NULL, NULL, map, q, NULL, report));
     assert_int_equal(report->quads.feature_edges, q->n_lines);
     const double distance = report->quads.feature_distance / g->mesh->diagonal;
     qc_object_release(map);
