@@ -4,9 +4,11 @@
 
 enum { NAMED = 8 };
 
-/* Strengths above every crease angle. */
+/* Strengths above every crease angle; means of equal ones are equal up to rounding. */
 #define STRENGTH_DRAWN    10.0
 #define STRENGTH_BOUNDARY 1000.0
+/* Angle between two sides of a face below which a crease has no corner there. */
+#define CORNER_MIN (75 * 3.14159265358979323846 / 180)
 
 typedef struct chain {
     int32_t end[2];          /* vertices; equal when it is closed */
@@ -193,6 +195,25 @@ static qc_status close_gaps(qc_ctx *ctx, network *w, double weak) {
     return QC_OK;
 }
 
+/* --- shortcuts -------------------------------------------------------------------------------- */
+
+/* A crease which takes two sides of a face, turning by more than 105 degrees, zigzags: it takes the
+ * third one. */
+static void cut_corners(network *w) {
+    const qc_mesh *mesh = w->mesh;
+    count_degrees(w);
+    for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
+        const int32_t a = mesh->halfedge_edge[qc_prev(c)], b = mesh->halfedge_edge[qc_next(c)];
+        const int32_t across = mesh->halfedge_edge[c], v = mesh->face_vertex[c];
+        if (w->edge[a] != QC_FEATURE_CREASE || w->edge[b] != QC_FEATURE_CREASE || w->edge[across] ||
+            w->degree[v] != 2 || !(w->angle[c] < CORNER_MIN))
+            continue;
+        w->edge[a] = w->edge[b] = 0;
+        w->edge[across] = QC_FEATURE_CREASE;
+        w->degree[v] = 0;
+    }
+}
+
 /* --- pruning ---------------------------------------------------------------------------------- */
 
 static void mark_short(network *w, double least) {
@@ -200,7 +221,7 @@ static void mark_short(network *w, double least) {
         chain *c = &w->chain[i];
         const bool round = c->end[0] == c->end[1] && !w->node[c->end[0]];
         const bool loose = w->degree[c->end[0]] == 1 || w->degree[c->end[1]] == 1;
-        c->drop = c->strength < STRENGTH_DRAWN &&
+        c->drop = c->strength < 0.999 * STRENGTH_DRAWN &&
                   ((round && c->length < 2 * least) || (loose && c->length < least));
     }
 }
@@ -229,7 +250,7 @@ static bool sector_at(const network *w, int32_t c, int32_t side[2], double *angl
 static int32_t weaker(const network *w, const int32_t side[2]) {
     const int32_t a = w->of[side[0]], b = w->of[side[1]];
     const double sa = w->chain[a].strength, sb = w->chain[b].strength;
-    if (fmin(sa, sb) >= STRENGTH_BOUNDARY) return -1;
+    if (fmin(sa, sb) > 0.999 * STRENGTH_BOUNDARY) return -1;
     return sa < sb || (!(sb < sa) && a > b) ? a : b;
 }
 
@@ -292,6 +313,7 @@ qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, doubl
     network w;
     qc_status status = network_create(ctx, mesh, edge, &w);
     if (status == QC_OK) status = close_gaps(ctx, &w, weak);
+    if (status == QC_OK) cut_corners(&w);
     if (status == QC_OK) status = prune(ctx, &w, least, sharp);
     for (int32_t e = 0; status == QC_OK && e < mesh->n_edges; e++) edge[e] = w.edge[e];
     network_free(&w);

@@ -110,7 +110,7 @@ static const qc_param table[] = {
     QC_PARAM_REAL(params, shortest, 2, 0, 1e6, "quad",
                   "hard creases with a free end which are shorter are noise; closed ones below "
                   "twice this"),
-    QC_PARAM_REAL(params, sharpest, 20, 0, 90, "deg",
+    QC_PARAM_REAL(params, sharpest, 30, 0, 90, "deg",
                   "of two hard features which meet in a smaller angle the weaker one is dropped"),
 };
 

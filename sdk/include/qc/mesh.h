@@ -255,7 +255,8 @@ QC_API qc_status qc_features_add_strokes(qc_ctx *ctx, const qc_mesh *mesh, int32
 QC_API qc_status qc_features_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                     int32_t *chain, int32_t *n);
 /* Closes gaps of creases along edges of dihedral angle above `weak` (radians) which lead on from a
- * free end to another feature, then drops creases with a free end shorter than `least` (units of
+ * free end to another feature, lets creases which take two sides of a face at an angle below 75
+ * degrees take the third, then drops creases with a free end shorter than `least` (units of
  * the mesh; closed ones shorter than twice that), then of two features which meet in less than
  * `sharp` (radians) the weaker one, each named by a warning with the numbers of the input: creases
  * by their mean angle, then groups and strokes; the boundary stays. Repeats until nothing changes.

@@ -150,6 +150,28 @@ static void test_prune(void **state) {
     qc_object_release(m);
 }
 
+/* Two sides of a face which meet in 45 degrees become the third; strokes stay as drawn. */
+static void test_zigzag(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *m = grid(ctx, 6, 4, 0, 1);
+    double *angle = malloc(3 * (size_t)m->n_faces * sizeof *angle);
+    uint8_t *edge = calloc((size_t)m->n_edges, 1);
+    int32_t c = 0;
+    assert_int_equal(qc_mesh_geometry(ctx, m, NULL, NULL, NULL, angle, NULL, NULL), QC_OK);
+    while (m->twin[c] < 0 || m->twin[qc_next(c)] < 0 || m->twin[qc_prev(c)] < 0 || angle[c] > 1)
+        c++;
+    const int32_t side[] = {m->halfedge_edge[qc_next(c)], m->halfedge_edge[qc_prev(c)]};
+    edge[side[0]] = edge[side[1]] = QC_FEATURE_LINE;
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, edge), QC_OK);
+    assert_true(count(m, edge) == 2 && edge[side[0]] && edge[side[1]]);
+    edge[side[0]] = edge[side[1]] = QC_FEATURE_CREASE;
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, edge), QC_OK);
+    assert_true(count(m, edge) == 1 && edge[m->halfedge_edge[c]] == QC_FEATURE_CREASE);
+    free(angle);
+    free(edge);
+    qc_object_release(m);
+}
+
 /* A fan of 36 triangles: two strokes from its middle to the rim, 30 degrees apart. The boundary and
  * one stroke stay when 40 degrees are asked for, both for 20. */
 static void test_sharp_features(void **state) {
@@ -188,9 +210,10 @@ static void test_sharp_features(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cube),    cmocka_unit_test(test_boundary_and_lines),
-        cmocka_unit_test(test_strokes), cmocka_unit_test(test_groups),
-        cmocka_unit_test(test_prune),   cmocka_unit_test(test_sharp_features),
+        cmocka_unit_test(test_cube),           cmocka_unit_test(test_boundary_and_lines),
+        cmocka_unit_test(test_strokes),        cmocka_unit_test(test_groups),
+        cmocka_unit_test(test_prune),          cmocka_unit_test(test_zigzag),
+        cmocka_unit_test(test_sharp_features),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
