@@ -141,6 +141,9 @@ typedef struct cli_times {
 char *cli_stats_json(const qc_report *report, const qc_pipeline *pipeline, const char *input,
                      const char *mode, const cli_times *times, int n_warnings,
                      const char *const *warnings);
+/* The page of --report; free() it. stats: the text of cli_stats_json. NULL: it cannot be made. */
+char *cli_report_page(qc_ctx *ctx, const qc_remesh_result *result, const char *stats,
+                      const char *command);
 /* Ratios of a report. */
 typedef struct cli_figures {
     double rsd_edge, rsd_angle, hausdorff_rel, mean_dist_rel, feature_distance_rel, arap_mean;

@@ -22,6 +22,7 @@ static const char *const modes[] = {"", "fast", "relocate", "best", NULL};
 
 typedef struct settings {
     const char *input, *output, *field, *stroke_rays, *save_field, *uv, *pipeline, *stats, *report;
+    char *command; /* as given; owned */
     double quads, edge_length, edge_length_rel, sharp;
     bool no_features, strict;
     int mode;
@@ -67,7 +68,8 @@ static int parse(int argc, const char **argv, settings *s, cli_arguments *argume
         {"set", 0, CLI_LIST, &s->set, 0, 0, NULL, "step.param=value", "set a parameter of a step"},
         {"plugin", 0, CLI_LIST, &s->plugin, 0, 0, NULL, "X.so", "load a plugin"},
         {"stats", 0, CLI_TEXT, &s->stats, 0, 0, NULL, "S.json", "write statistics"},
-        {"report", 0, CLI_TEXT, &s->report, 0, 0, NULL, "R.html", "write a report (not built yet)"},
+        {"report", 0, CLI_TEXT, &s->report, 0, 0, NULL, "R.html",
+         "write a page with pictures and figures"},
         {"strict", 0, CLI_FLAG, &s->strict, 0, 0, NULL, NULL, "fail when a single component fails"},
         {"seed", 0, CLI_INTEGER, &s->seed, 0, 9007199254740992.0, NULL, "N",
          "seed of randomised searches"},
@@ -78,8 +80,25 @@ static int parse(int argc, const char **argv, settings *s, cli_arguments *argume
     return status;
 }
 
+/* The arguments as a line for a shell; free() it. */
+static char *command_line(int argc, const char **argv) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) return NULL;
+    fputs("quadcover", out);
+    for (int i = 0; i < argc; i++) {
+        const bool plain =
+            argv[i][0] && strcspn(argv[i], " \t\n'\"\\$&|;<>()*?[]#~`!{}") == strlen(argv[i]);
+        fputs(plain ? " " : " '", out);
+        for (const char *c = argv[i]; *c; c++) fputs(*c == '\'' ? "'\\''" : (char[]){*c, 0}, out);
+        if (!plain) fputc('\'', out);
+    }
+    return fclose(out) == 0 ? text : NULL;
+}
+
 static int check_outputs(const settings *s) {
-    const char *const outputs[] = {s->output, s->uv, s->save_field, s->stats};
+    const char *const outputs[] = {s->output, s->uv, s->save_field, s->stats, s->report};
     int n_given = 0, n_stdout = 0, status = EXIT_DONE;
     for (size_t i = 0; i < sizeof outputs / sizeof *outputs && status == EXIT_DONE; i++) {
         if (!outputs[i]) continue;
@@ -94,8 +113,6 @@ static int check_outputs(const settings *s) {
 }
 
 static int check_settings(const settings *s) {
-    if (s->report)
-        return cli_error(EXIT_USAGE, "not built yet: --report; --stats gives the figures as JSON");
     if (s->pipeline && s->mode != MODE_NONE)
         return cli_error(EXIT_USAGE, "--pipeline brings its own steps; leave --mode out");
     if ((s->quads > 0) + (s->edge_length > 0) + (s->edge_length_rel > 0) > 1)
@@ -164,14 +181,23 @@ static int write_field(run *r, const char *path) {
     return EXIT_DONE;
 }
 
-static int write_stats(run *r, const settings *s) {
-    if (!s->stats) return EXIT_DONE;
+static int write_report(run *r, const settings *s, const char *stats) {
+    char *page = cli_report_page(r->session.ctx, &r->result, stats, s->command);
+    if (!page) return cli_error(EXIT_FAILED, "%s: cannot make the report", s->report);
+    const int status = cli_write_text(s->report, page);
+    free(page);
+    return status;
+}
+
+static int write_figures(run *r, const settings *s) {
+    if (!s->stats && !s->report) return EXIT_DONE;
     r->times.total = cli_seconds() - r->session.start;
     char *text = cli_stats_json(r->result.report, r->pipeline, s->input,
                                 s->pipeline ? "pipeline" : modes[mode_of(s)], &r->times,
                                 r->session.n_warnings, (const char *const *)r->session.warning);
-    if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->stats);
-    const int status = cli_write_text(s->stats, text);
+    if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->input);
+    int status = s->stats ? cli_write_text(s->stats, text) : EXIT_DONE;
+    if (status == EXIT_DONE && s->report) status = write_report(r, s, text);
     free(text);
     return status;
 }
@@ -194,7 +220,7 @@ static int write_all(run *r, const settings *s) {
     if (status == EXIT_DONE) status = write_mesh(r, r->result.uv, s->uv, "a parameterization");
     if (status == EXIT_DONE) status = write_field(r, s->save_field);
     r->times.write = cli_seconds() - start;
-    return status == EXIT_DONE ? write_stats(r, s) : status;
+    return status == EXIT_DONE ? write_figures(r, s) : status;
 }
 
 static int work(run *r, const settings *s) {
@@ -218,6 +244,8 @@ int cli_remesh(int argc, const char **argv) {
     int status = parse(argc, argv, &s, &arguments);
     if (status >= 0) return status;
     status = check_settings(&s);
+    if (status == EXIT_DONE && s.report && !(s.command = command_line(argc, argv)))
+        status = cli_error(EXIT_FAILED, "out of memory");
     if (status == EXIT_DONE) status = cli_session_open(&r.session, &s.common);
     if (status == EXIT_DONE) status = work(&r, &s);
     qc_remesh_result_clear(&r.result);
@@ -225,6 +253,7 @@ int cli_remesh(int argc, const char **argv) {
     qc_pipeline_free(r.pipeline);
     qc_registry_free(r.registry);
     if (r.session.ctx) cli_session_close(&r.session);
+    free(s.command);
     cli_arguments_free(&arguments);
     return status;
 }
