@@ -5,7 +5,7 @@ QUADS  ?= 5000
 PARTS  ?=
 JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: build setup demo check bench results format check-format install clean
+.PHONY: build setup browser demo check bench results format check-format install clean
 
 build: setup
 	cmake --preset release >/dev/null
@@ -14,13 +14,17 @@ build: setup
 setup:
 	@sh cmake/setup-debian.sh
 
+# For the tests of --report, which are skipped without.
+browser:
+	-@sh cmake/setup-debian.sh chromium
+
 # MESH=file.obj: remesh that; otherwise the knot of the 2007 paper, irregular and noisy.
 demo: build
 	@sh bindings/cli/demo.sh build/bin/quadcover "$(MESH)" "$(QUADS)"
 
 # Formatting; clang without warnings; unit tests under ASan and UBSan, those of everything parallel under
 # TSan; then all tests of the release build, whose summary is the last thing printed.
-check: build check-format
+check: build browser check-format
 	cmake --preset clang >/dev/null
 	cmake --build build-clang -j $(JOBS)
 	cmake --preset asan-ubsan >/dev/null

@@ -62,8 +62,16 @@ void cli_arguments_free(cli_arguments *arguments);
 enum { CLI_PROGRESS_AUTO = 0, CLI_PROGRESS_PLAIN, CLI_PROGRESS_NONE };
 extern const char *const cli_progress_names[];
 
+/* A point of a curve of qc_ctx_options.sample. */
+typedef struct cli_sample {
+    char step[32], curve[32];
+    double x, y;
+} cli_sample;
+
 typedef struct cli_session {
     qc_ctx *ctx;
+    cli_sample *sample;
+    size_t n_samples;
     int progress;
     double start, time_limit; /* seconds; 0 = none */
     bool out_of_time, line_open;
@@ -91,7 +99,7 @@ typedef struct cli_common {
          1e9,                                                                                      \
          NULL,                                                                                     \
          "SECONDS",                                                                                \
-         "aim at this time: improve less; 0 = none (default)"},                                          \
+         "aim at this time: improve less; 0 = none (default)"},                                    \
     {                                                                                              \
         "progress", 0, CLI_CHOICE, &(c).progress, 0, 0, cli_progress_names, "auto|plain|none",     \
             "auto: one line on a terminal; plain: lines; none"                                     \
@@ -142,7 +150,7 @@ char *cli_stats_json(const qc_report *report, const qc_pipeline *pipeline, const
                      const char *mode, const cli_times *times, int n_warnings,
                      const char *const *warnings);
 /* The page of --report; free() it. stats: the text of cli_stats_json. NULL: it cannot be made. */
-char *cli_report_page(qc_ctx *ctx, const qc_remesh_result *result, const char *stats,
+char *cli_report_page(const cli_session *session, const qc_remesh_result *result, const char *stats,
                       const char *command);
 /* Ratios of a report. */
 typedef struct cli_figures {

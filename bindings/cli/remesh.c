@@ -182,7 +182,7 @@ static int write_field(run *r, const char *path) {
 }
 
 static int write_report(run *r, const settings *s, const char *stats) {
-    char *page = cli_report_page(r->session.ctx, &r->result, stats, s->command);
+    char *page = cli_report_page(&r->session, &r->result, stats, s->command);
     if (!page) return cli_error(EXIT_FAILED, "%s: cannot make the report", s->report);
     const int status = cli_write_text(s->report, page);
     free(page);

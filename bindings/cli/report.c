@@ -36,14 +36,15 @@ static char *page(const char *json, const char *arrays) {
     return NULL;
 }
 
-char *cli_report_page(qc_ctx *ctx, const qc_remesh_result *result, const char *stats,
+char *cli_report_page(const cli_session *session, const qc_remesh_result *result, const char *stats,
                       const char *command) {
     cli_arrays arrays = {NULL, NULL, 0, false};
-    json_t *geometry = result->mesh ? cli_report_geometry(ctx, result, &arrays) : NULL;
+    json_t *geometry = result->mesh ? cli_report_geometry(session->ctx, result, &arrays) : NULL;
     json_t *histograms = result->quads ? cli_histograms(result->quads) : json_null();
     json_t *numbers = json_loads(stats, 0, NULL);
-    json_t *root = json_pack("{s:o,s:s,s:o,s:o}", "stats", numbers, "command", command,
-                             "histograms", histograms, "geometry", geometry);
+    json_t *root = json_pack(
+        "{s:o,s:s,s:o,s:o,s:o}", "stats", numbers, "command", command, "histograms", histograms,
+        "trace", cli_report_trace(session->sample, session->n_samples), "geometry", geometry);
     char *json = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(12)) : NULL;
     char *packed = json ? cli_arrays_text(&arrays) : NULL;
     char *text = packed ? page(json, packed) : NULL;

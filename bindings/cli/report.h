@@ -33,6 +33,9 @@ json_t *cli_report_geometry(qc_ctx *ctx, const qc_remesh_result *result, cli_arr
 /* Edge lengths / mean and corner angles (thesis, Figure 7.1), JSON. */
 json_t *cli_histograms(const qc_polygon_mesh *quads);
 
+/* Curves: {step, curves: {name: [[x, y], ...]}} of each run of a step, in order. */
+json_t *cli_report_trace(const cli_sample *sample, size_t n);
+
 /* The page without its data: bindings/report/viewer.html. */
 extern const char cli_viewer[];
 

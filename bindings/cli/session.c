@@ -73,6 +73,22 @@ void cli_session_warn(cli_session *s, const char *format, ...) {
     s->warning[s->n_warnings++] = copy;
 }
 
+/* Room doubles at powers of two. A curve ends where memory does. */
+static void on_sample(void *user, const char *stage, const char *curve, double x, double y) {
+    cli_session *s = user;
+    const size_t n = s->n_samples;
+    if ((n & (n - 1)) == 0) {
+        cli_sample *grown = realloc(s->sample, (n ? 2 * n : 1) * sizeof *grown);
+        if (!grown) return;
+        s->sample = grown;
+    }
+    cli_sample *point = &s->sample[s->n_samples++];
+    snprintf(point->step, sizeof point->step, "%s", stage);
+    snprintf(point->curve, sizeof point->curve, "%s", curve);
+    point->x = x;
+    point->y = y;
+}
+
 static void on_log(void *user, int32_t level, const char *stage, const char *text) {
     if (level < QC_LOG_WARNING) return;
     const bool named = strncmp(text, stage, strlen(stage)) == 0; /* "" is a prefix of all */
@@ -96,6 +112,7 @@ int cli_session_open(cli_session *session, const cli_common *common) {
     options.threads = (uint32_t)common->threads;
     options.progress = on_progress;
     options.log = on_log;
+    options.sample = on_sample;
     options.user = session;
     const qc_status status = qc_ctx_create(&options, &session->ctx);
     if (status != QC_OK) return cli_error(EXIT_FAILED, "%s", qc_status_name(status));
@@ -107,6 +124,7 @@ void cli_session_close(cli_session *session) {
     cli_session_quiet(session);
     for (int i = 0; i < session->n_warnings; i++) free(session->warning[i]);
     free(session->warning);
+    free(session->sample);
     qc_ctx_free(session->ctx);
     session->ctx = NULL;
 }

@@ -39,6 +39,7 @@ qc_status qc_ctx_create(const qc_ctx_options *options, qc_ctx **out) {
     ctx->resize = o.resize;
     ctx->log = o.log;
     ctx->progress = o.progress;
+    ctx->sample = o.sample;
     ctx->user = o.user;
     ctx->isa = isa;
     ctx->threads = o.threads == 0 ? online_cores() : o.threads > 256 ? 256 : o.threads;
@@ -148,6 +149,10 @@ void qc__detail(qc_ctx *ctx, const char *format, ...) {
     va_start(args, format);
     vsnprintf(ctx->detail, sizeof ctx->detail, format, args);
     va_end(args);
+}
+
+void qc_ctx_sample(qc_ctx *ctx, const char *curve, double x, double y) {
+    if (ctx->sample) ctx->sample(ctx->user, ctx->range.stage, curve, x, y);
 }
 
 const char *qc_ctx_progress_detail(const qc_ctx *ctx) {

@@ -11,6 +11,7 @@ struct qc_ctx {
     void *(*resize)(void *user, void *p, size_t old_size, size_t new_size);
     void (*log)(void *user, int32_t level, const char *stage, const char *text);
     bool (*progress)(void *user, const char *stage, double fraction);
+    void (*sample)(void *user, const char *stage, const char *curve, double x, double y);
     void *user;
     uint32_t threads;
     qc__isa isa;

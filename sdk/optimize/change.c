@@ -128,6 +128,7 @@ qc_status qc_distortion_change(qc_ctx *ctx, qc_distortion *d, int32_t n, const q
     const bool better = !status && found < limit;
     if (better) {
         keep(d, n, found);
+        qc__sample_state(ctx, d);
         if (n <= SWEEPS_MAX) status = qc_factor_commit(ctx, d->factor);
     } else {
         const qc_status undone = undo(ctx, d, n, done, flip);

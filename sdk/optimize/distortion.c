@@ -135,11 +135,19 @@ qc_status qc_distortion_create(qc_ctx *ctx, const qc_matching *matching, const q
     d->mesh = matching->field->mesh;
     qc_status status = allocate(ctx, d) ? prepare(ctx, d, sizing, lambda) : QC_ERR_NOMEM;
     if (!status) status = first_energy(ctx, d);
-    if (status)
+    if (status) {
         qc_distortion_free(d);
-    else
-        *out = d;
-    return status;
+        return status;
+    }
+    qc__sample_state(ctx, d);
+    *out = d;
+    return QC_OK;
+}
+
+void qc__sample_state(qc_ctx *ctx, const qc_distortion *d) {
+    const double x = (double)d->evaluations;
+    qc_ctx_sample(ctx, "E_D_rel", x, d->whole > 0 ? 100 * d->energy / d->whole : 0);
+    qc_ctx_sample(ctx, "branch_points", x, d->branch_points);
 }
 
 void qc_distortion_free(qc_distortion *d) {

@@ -72,6 +72,8 @@ double qc__flip_bend(const qc_distortion *d, qc_flip_step flip, int32_t *s, int3
 /* Marks the vertices on hard features of the field; hard: n_vertices, 0 before. */
 void qc__find_hard(const qc_face_field *field, uint8_t *hard);
 bool qc__face_is_fixed(const qc_distortion *d, int32_t t);
+/* The present state as a point of the curves of Figure 6.1. */
+void qc__sample_state(qc_ctx *ctx, const qc_distortion *d);
 /* The factor of the matrix as it is. */
 qc_status qc__refresh_factor(qc_ctx *ctx, qc_distortion *d);
 qc_status qc__check_flips(qc_ctx *ctx, const qc_distortion *d, int32_t n, const qc_flip_step *flip);

@@ -24,6 +24,7 @@ AT(qc_ctx_options, log, 16);
 AT(qc_ctx_options, progress, 24);
 AT(qc_ctx_options, user, 32);
 AT(qc_ctx_options, instructions, 40);
+AT(qc_ctx_options, sample, 48);
 
 AT(qc_error, status, 0);
 AT(qc_error, where, 8);

@@ -36,8 +36,8 @@ run 2 remesh in.obj -o out.obj --mode fats
 error_says 'closest: fast'
 run 2 remesh in.obj -o out.obj --mode best --pipeline p.json
 error_says --mode
-run 2 remesh in.obj -o out.obj --report r.html
-error_says 'not built yet' --report
+run 2 remesh in.obj -o - --report -
+error_says "only one output can go to '-'"
 run 2 remesh in.obj -o out.obj --progress loud
 error_says --progress
 run 2 batch .

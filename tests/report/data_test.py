@@ -85,6 +85,18 @@ def field_follows_the_map(report, arrays):
     assert off[len(off) // 2] < 8, off[len(off) // 2]
 
 
+def curves_of_figure_6_1(program, name):
+    """Steps which optimise, evaluations and E_D of each run of one; without that, none."""
+    run(program, "remesh", name, "--quads", "500", "--mode", "best", "--report", "best.html")
+    report, _ = read("best.html")
+    assert [part["step"] for part in report["trace"]] == ["cancel", "curl", "balance"]
+    for part in report["trace"]:
+        energy, points = part["curves"]["E_D_rel"], part["curves"]["branch_points"]
+        assert [x for x, _ in energy] == [x for x, _ in points] == sorted(x for x, _ in energy)
+        if part["step"] == "curl":
+            assert all(a[1] >= b[1] for a, b in zip(energy, energy[1:]))
+
+
 def no_address(path):
     with open(path, encoding="utf-8") as file:
         text = file.read()
@@ -117,6 +129,8 @@ def main(program):
         histograms(report)
         field_follows_the_map(report, arrays)
         no_address("page.html")
+        assert report["trace"] == []
+        curves_of_figure_6_1(program, name)
         run(program, "remesh", name, "--quads", "500", "--mode", "fast", "--report", "again.html",
             "--threads", "2")
         assert read("again.html")[1] == arrays, "depends on the number of threads"

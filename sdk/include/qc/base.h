@@ -80,9 +80,13 @@ typedef struct qc_ctx_options {
     /* Vector instructions of the numerical kernels: "avx512", "avx2" or "portable"; NULL = the best
      * the processor has. Results are bit for bit repeatable for each; they round differently. */
     const char *instructions;
+    /* One point of a curve which a stage draws while it works, such as "E_D_rel" (percent) and
+     * "branch_points" over the evaluations x of an optimisation; x never falls within a stage. NULL
+     * = discard. Calling thread only. */
+    void (*sample)(void *user, const char *stage, const char *curve, double x, double y);
 } qc_ctx_options;
 #define QC_CTX_OPTIONS_INIT                                                                        \
-    { sizeof(qc_ctx_options), 0, NULL, NULL, NULL, NULL, NULL }
+    { sizeof(qc_ctx_options), 0, NULL, NULL, NULL, NULL, NULL, NULL }
 
 typedef struct qc_error {
     qc_status status;
@@ -109,6 +113,8 @@ QC_API qc_status qc_ctx_fail(qc_ctx *ctx, qc_status status, int64_t where, const
 /* Reports the fraction done of the call under way; false: clean up and return QC_ERR_CANCELLED,
  * which is recorded. */
 QC_API bool qc_ctx_progress(qc_ctx *ctx, double fraction);
+/* Passes a point to qc_ctx_options.sample. */
+QC_API void qc_ctx_sample(qc_ctx *ctx, const char *curve, double x, double y);
 /* What the step under way says about itself, such as "E_D 0.93 %, 64 branch points, ..."; "" when
  * nothing. Borrowed, for use within the progress callback. */
 QC_API const char *qc_ctx_progress_detail(const qc_ctx *ctx);

@@ -173,6 +173,50 @@ static void no_time_no_change(void **state) {
     qc_object_release(mesh);
 }
 
+typedef struct curve {
+    double x, energy, branch_points;
+    int n;
+    bool good;
+} curve;
+
+static void on_sample(void *user, const char *stage, const char *name, double x, double y) {
+    (void)stage;
+    curve *c = user;
+    c->good = c->good && x >= c->x;
+    c->x = x;
+    c->n++;
+    if (strcmp(name, "branch_points") == 0) {
+        c->branch_points = y;
+        return;
+    }
+    c->good = c->good && strcmp(name, "E_D_rel") == 0 && (c->n == 1 || y < c->energy);
+    c->energy = y;
+}
+
+/* Figure 6.1: each kept change is a point of both curves; the last one is the state. */
+static void curves_are_sampled(void **state) {
+    (void)state;
+    curve c = {0, 0, 0, 0, true};
+    qc_ctx_options o = QC_CTX_OPTIONS_INIT;
+    o.sample = on_sample;
+    o.user = &c;
+    qc_ctx *ctx;
+    assert_int_equal(qc_ctx_create(&o, &ctx), QC_OK);
+    qc_mesh *mesh = ellipsoid(ctx, 24, 20, 1, 1.2, 3);
+    qc_matching *m = smooth_matching(ctx, mesh, false);
+    qc_distortion *d = NULL;
+    reduce(ctx, m, 1, 0, &d);
+    qc_distortion_state s;
+    qc_distortion_get_state(d, &s);
+    assert_true(c.good && c.n >= 4 && c.n % 2 == 0);
+    assert_true(c.x <= (double)s.evaluations && c.branch_points == s.branch_points);
+    assert_true(fabs(c.energy - 100 * s.energy / s.whole) <= 1e-12 * c.energy);
+    qc_distortion_free(d);
+    qc_object_release(m);
+    qc_object_release(mesh);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(energy_falls, set_up, tear_down),
@@ -180,6 +224,7 @@ int main(void) {
         cmocka_unit_test(cancelled_state_is_valid),
         cmocka_unit_test_setup_teardown(budgets_are_kept, set_up, tear_down),
         cmocka_unit_test_setup_teardown(no_time_no_change, set_up, tear_down),
+        cmocka_unit_test(curves_are_sampled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,8 +68,9 @@ export function panel(report) {
     side.append(...section('Edge lengths / mean', histogramPlot(histograms.edge, 'Histogram of edge lengths', '', 1)));
     side.append(...section('Angles', histogramPlot(histograms.angle, 'Histogram of angles', '°', 90)));
   }
-  if (trace?.length) {
-    side.append(...section('Distortion (red) and branch points (blue) over evaluations', tracePlot(trace)));
+  const optimisation = trace.filter(({ curves }) => curves.E_D_rel);
+  if (optimisation.length > 0) {
+    side.append(...section('Distortion (red) and branch points (blue) over evaluations', tracePlot(optimisation)));
   }
   side.append(...section('Times', times(stats.seconds)));
   if (stats.pipeline) side.append(...section('Parameters', ...parameters(stats.pipeline)));

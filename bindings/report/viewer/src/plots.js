@@ -51,19 +51,17 @@ function polyline(svg, points, most, end, colour) {
   add(svg, 'path', { d: d.join(''), stroke: colour, fill: 'none', 'stroke-width': 1.4 });
 }
 
-// trace: [{step, evaluation: [...], energy: [...], branch_points: [...]}], one after the other; energy
-// in percent of the field.
+// trace: [{step, curves: {E_D_rel: [[x, y], ...], branch_points: [...]}}], one after the other; E_D in
+// percent of the field.
 export function tracePlot(trace) {
   const svg = frame('Distortion and number of branch points over evaluations');
   const energy = [], points = [], starts = [];
   let begin = 0;
-  for (const part of trace) {
-    starts.push([begin, part.step]);
-    part.evaluation.forEach((n, i) => {
-      energy.push([begin + n, part.energy[i]]);
-      points.push([begin + n, part.branch_points[i]]);
-    });
-    begin += part.evaluation.at(-1) ?? 0;
+  for (const { step, curves } of trace) {
+    starts.push([begin, step]);
+    energy.push(...curves.E_D_rel.map(([x, y]) => [begin + x, y]));
+    points.push(...curves.branch_points.map(([x, y]) => [begin + x, y]));
+    begin = energy.at(-1)[0];
   }
   const mostEnergy = Math.max(...energy.map((p) => p[1]));
   const mostPoints = Math.max(...points.map((p) => p[1]));

@@ -6,26 +6,38 @@ import {
 import { make, panel } from './panel.js';
 import { createView } from './view.js';
 
-// {surface name: {label, surface, points, lines}} of what the run made.
-function surfaces(arrays, geometry, radius) {
-  const made = {};
+// {name: {label, make, points}} of the surfaces which the run made; make() is called when first shown.
+function surfacesOf(arrays, geometry) {
+  const surfaces = {};
+  const { cones } = arrays;
   if (arrays.input_faces) {
-    made.input = { label: 'Input', surface: triangleSurface(arrays.input_positions, arrays.input_faces), points: arrays.cones };
+    const make = () => triangleSurface(arrays.input_positions, arrays.input_faces);
+    surfaces.input = { label: 'Input', make, points: cones };
   }
   if (arrays.grid_faces) {
-    made.grid = {
-      label: 'Parameter grid', points: arrays.cones,
-      surface: gridSurface(arrays.grid_positions, arrays.grid_faces, arrays.grid_uv, geometry.uv_scale),
-    };
+    const make = () => gridSurface(arrays.grid_positions, arrays.grid_faces, arrays.grid_uv, geometry.uv_scale);
+    surfaces.grid = { label: 'Parameter grid', make, points: cones };
   }
   if (arrays.quads_faces) {
-    made.quads = {
-      label: 'Quads', surface: quadSurface(arrays.quads_positions, arrays.quads_faces),
-      points: irregularVertices(arrays.quads_positions, arrays.quads_faces),
-    };
+    const make = () => quadSurface(arrays.quads_positions, arrays.quads_faces);
+    surfaces.quads = { label: 'Quads', make, points: irregularVertices(arrays.quads_positions, arrays.quads_faces) };
   }
-  for (const one of Object.values(made)) one.balls = balls(one.points ?? [], radius);
-  return made;
+  return surfaces;
+}
+
+// What can be switched on and off beside the surface.
+function overlaysOf(arrays) {
+  const overlays = { singularities: { label: 'Singularities', on: true } };
+  if (arrays.field) {
+    const make = () => crosses(arrays.input_positions, arrays.input_faces, arrays.field);
+    overlays.field = { label: 'Field', make, on: false };
+  }
+  if (arrays.quads_lines?.length) {
+    const make = () => segments(arrays.quads_positions, arrays.quads_lines, '#b8002e');
+    overlays.features = { label: 'Features', make, on: true };
+  }
+  overlays.edges = { label: 'Lines', on: true };
+  return overlays;
 }
 
 function legend(points) {
@@ -50,37 +62,32 @@ export async function showReport(report, text) {
   const { geometry } = report;
   const arrays = await readArrays(geometry.arrays, text);
   const view = createView(box, geometry.extent);
-  const made = surfaces(arrays, geometry, geometry.ball);
-  const overlays = { singularities: { label: 'Singularities' } };
-  if (arrays.field) {
-    overlays.field = { label: 'Field', object: crosses(arrays.input_positions, arrays.input_faces, arrays.field) };
-  }
-  if (arrays.quads_lines?.length) {
-    overlays.features = { label: 'Features', object: segments(arrays.quads_positions, arrays.quads_lines, '#b8002e') };
-  }
-  overlays.edges = { label: 'Lines' };
-
-  const names = Object.keys(made);
+  const surfaces = surfacesOf(arrays, geometry);
+  const overlays = overlaysOf(arrays);
+  const names = Object.keys(surfaces);
   const start = names.includes('quads') ? 'quads' : names.at(-1);
-  const pick = make('fieldset', {}, ...names.map((n) => choice('radio', 'surface', n, made[n].label, n === start)));
-  const switches = make('fieldset', {}, ...Object.keys(overlays).map((n) =>
-    choice('checkbox', 'layer', n, overlays[n].label, n !== 'field')));
-  const controls = make('form', { className: 'controls' }, pick, switches);
+  const controls = make('form', { className: 'controls' },
+    make('fieldset', {}, ...names.map((n) => choice('radio', 'surface', n, surfaces[n].label, n === start))),
+    make('fieldset', {}, ...Object.entries(overlays).map(([n, one]) => choice('checkbox', 'layer', n, one.label, one.on))));
   const key = make('div', { className: 'legend' });
   box.append(controls, key);
-  for (const one of Object.values(made)) view.scene.add(one.surface, one.balls);
-  for (const one of Object.values(overlays)) if (one.object) view.scene.add(one.object);
 
+  // Shows or hides a part of the picture; visible for the first time, it is made.
+  const show = (owner, part, visible, create) => {
+    if (visible && !owner[part]) view.scene.add((owner[part] = create()));
+    if (owner[part]) owner[part].visible = visible;
+  };
   const update = () => {
-    const shown = new FormData(controls).get('surface');
-    const on = new Set(new FormData(controls).getAll('layer'));
-    for (const [name, one] of Object.entries(made)) {
-      one.surface.visible = name === shown;
-      one.surface.material.uniforms.strength.value = on.has('edges') ? 0.85 : 0;
-      one.balls.visible = name === shown && on.has('singularities');
+    const form = new FormData(controls);
+    const shown = form.get('surface');
+    const on = new Set(form.getAll('layer'));
+    for (const [name, one] of Object.entries(surfaces)) {
+      show(one, 'surface', name === shown, one.make);
+      show(one, 'balls', name === shown && on.has('singularities'), () => balls(one.points ?? [], geometry.ball));
     }
-    for (const [name, one] of Object.entries(overlays)) if (one.object) one.object.visible = on.has(name);
-    key.replaceChildren(...(on.has('singularities') ? legend(made[shown]?.points) : []));
+    for (const [name, one] of Object.entries(overlays)) if (one.make) show(one, 'object', on.has(name), one.make);
+    surfaces[shown].surface.material.uniforms.strength.value = on.has('edges') ? 0.85 : 0;
+    key.replaceChildren(...(on.has('singularities') ? legend(surfaces[shown].points) : []));
     view.render();
   };
   controls.addEventListener('change', update);
