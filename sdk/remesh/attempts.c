@@ -1,12 +1,14 @@
-/* Running the steps of a component again with other integers where the first ones left a map which
- * folds over. Rounding is the one step with many nearly equal answers; which of them unfold cannot
- * be told before the map is cut into quads. */
+/* Running the steps of a component again with other integers, then with more quads, where the first
+ * ones left a map which folds over. Rounding is the one step with many nearly equal answers; which
+ * of them unfold cannot be told before the map is cut into quads. Where quads are too large for the
+ * distances between singularities and features none does, so that in the end more are made. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sdk/remesh/internal.h"
 
-enum { ATTEMPTS = 4 };
+enum { ATTEMPTS = 4, REFINEMENTS = 6 }; /* of sqrt(2): up to 8 times as many quads */
 
 /* Step which runs qc.round and takes a seed, or -1. */
 static int64_t find_round(const qc_pipeline *pipeline, uint32_t first) {
@@ -20,24 +22,58 @@ static bool failed_later(const qc_ctx *ctx, qc_status status, const char *step) 
     return status == QC_ERR_FAILED && strcmp(qc_ctx_error(ctx)->stage, step) != 0;
 }
 
-static qc_status run_from(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t round, qc_bag *bag) {
-    const uint32_t end = qc_pipeline_count(pipeline);
+static qc_status set_refine(qc_pipeline *pipeline, const char *step, double factor) {
+    char text[40];
+    qc__print_double(text, sizeof text, factor);
+    return qc_pipeline_set(pipeline, step, "refine", text);
+}
+
+/* Says what became of the number of quads that was asked for. */
+static void warn_refined(qc_ctx *ctx, const qc_bag *bag, const char *reason) {
+    const qc_sizing *sizing = qc_bag_latest(bag, QC_TYPE_SIZING);
+    const qc_polygon_mesh *quads = qc_bag_latest(bag, QC_TYPE_POLYGON_MESH);
+    if (!sizing || !quads) return;
+    const double length = sizing->edge_length;
+    const double wanted =
+        sizing->target_quads > 0 ? sizing->target_quads : sizing->mesh->area / (length * length);
+    qc__log(ctx, QC_LOG_WARNING, "made %d quads instead of %.0f, which are too large here: %s",
+            (int)quads->n_faces, wanted, reason);
+}
+
+/* Tries again from the rounding: first other integers, then more quads. */
+static qc_status try_again(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t round, qc_bag *bag,
+                           uint64_t seed, double refine) {
     const char *step = qc_pipeline_step_name(pipeline, round);
+    qc_status status = QC_ERR_FAILED;
+    char reason[512] = "";
+    for (int k = 1; k < ATTEMPTS + REFINEMENTS && failed_later(ctx, status, step); k++) {
+        const int finer = k < ATTEMPTS ? 0 : k - ATTEMPTS + 1;
+        qc__log(ctx, QC_LOG_WARNING, "%s; rounding again with %s", qc_ctx_error(ctx)->text,
+                finer ? "more quads" : "other integers");
+        if (finer <= 1) snprintf(reason, sizeof reason, "%s", qc_ctx_error(ctx)->text);
+        const qc__range outer = qc__range_begin(ctx, NULL, 1, 1);
+        status = qc__set_seed(pipeline, step, seed + (uint64_t)(finer ? 0 : k));
+        if (status == QC_OK) status = set_refine(pipeline, step, refine * pow(2, 0.5 * finer));
+        if (status == QC_OK)
+            status = qc_pipeline_run_range(pipeline, round, qc_pipeline_count(pipeline), bag);
+        qc__range_end(ctx, outer);
+        if (status == QC_OK && finer) warn_refined(ctx, bag, reason);
+    }
+    return status;
+}
+
+static qc_status run_from(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t round, qc_bag *bag) {
+    const char *step = qc_pipeline_step_name(pipeline, round);
+    qc_status status = qc_pipeline_run_range(pipeline, round, qc_pipeline_count(pipeline), bag);
+    if (!failed_later(ctx, status, step)) return status;
     const char *text = qc_pipeline_get(pipeline, step, "seed");
     const uint64_t seed = text ? strtoull(text, NULL, 10) : 0;
-    qc_status status = qc_pipeline_run_range(pipeline, round, end, bag);
-    for (int k = 1; k < ATTEMPTS && text && failed_later(ctx, status, step); k++) {
-        qc__log(ctx, QC_LOG_WARNING, "%s; rounding again with other integers",
-                qc_ctx_error(ctx)->text);
-        const qc__range outer = qc__range_begin(ctx, NULL, 1, 1);
-        status = qc__set_seed(pipeline, step, seed + (uint64_t)k);
-        if (status == QC_OK) status = qc_pipeline_run_range(pipeline, round, end, bag);
-        qc__range_end(ctx, outer);
-    }
-    if (text) {
-        const qc_status restored = qc__set_seed(pipeline, step, seed);
-        if (status == QC_OK) status = restored;
-    }
+    text = qc_pipeline_get(pipeline, step, "refine");
+    const double refine = text ? qc__parse_double(text, NULL) : 1;
+    status = try_again(ctx, pipeline, round, bag, seed, refine);
+    const qc_status seed_restored = qc__set_seed(pipeline, step, seed);
+    const qc_status refine_restored = set_refine(pipeline, step, refine);
+    if (status == QC_OK) status = seed_restored != QC_OK ? seed_restored : refine_restored;
     return status;
 }
 

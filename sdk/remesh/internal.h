@@ -43,7 +43,7 @@ qc_status qc__density_restore(qc_pipeline *pipeline, const qc__density *density)
 /* The parameter "seed" of a step which has one. */
 qc_status qc__set_seed(qc_pipeline *pipeline, const char *step, uint64_t seed);
 /* Runs the steps from `first` on. Where one after qc.round fails, they run again from there with
- * other integers, a few times; each time a warning tells why. */
+ * other integers, a few times, then with more quads; each time a warning tells why. */
 qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t first, qc_bag *bag);
 
 /* Fails where the quads of a component are not a manifold of quads with the topology of its mesh.

@@ -8,6 +8,7 @@ typedef struct params {
     double tolerance;
     const char *solver;
     int64_t seed;
+    double refine;
 } params;
 static const char *const solvers[] = {QC_SOLVER_ID, NULL};
 
@@ -35,6 +36,10 @@ static const qc_param table[] = {
                        "factorises L; builtin unless a plugin or the program offers another"),
     QC_PARAM_INT(params, seed, 0, 0, 9007199254740992.0, "",
                  "of the search for integers; another one may give other integers"),
+    QC_PARAM_REAL(
+        params, refine, 1, 0.01, 100, "",
+        "quads wanted, in units of what the sizing asks for; raised by the program where no "
+        "map is found"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
@@ -45,6 +50,7 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.radius = (int32_t)p->radius;
     options.tolerance = p->tolerance;
     options.seed = (uint64_t)p->seed;
+    options.refine = p->refine;
     options.solver = (const qc_solver *)r->find(r, QC_SOLVER_ID, p->solver);
     if (!options.solver) return QC_ERR_NOT_FOUND;
     qc_corner_map *map = NULL;

@@ -101,12 +101,15 @@ typedef struct qc_round_options {
     const qc_solver *solver; /* factorises L; borrowed for the call, NULL = builtin    */
     uint64_t seed;           /* of the lattice search; another one may give other integers */
     int32_t trial;           /* 1: only the energies are of interest; logs no warnings */
+    double refine;           /* quads wanted, in units of what the sizing asks for; 0 = 1 */
 } qc_round_options;
 #define QC_ROUND_OPTIONS_INIT                                                                      \
-    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02, NULL, 0, 0 }
+    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02, NULL, 0, 0, 1.0 }
 /* Rounds the periods to a lattice by the period matrix (Sigma trick, 6.3.2) and adds the harmonic
- * map with the missing periods. When the sizing asks for a number of quads the map is rescaled and
- * rounded again until its area meets it. Errors: NOMEM, CANCELLED, FAILED, those of the solver. */
+ * map with the missing periods. Hard features of the matching become integer isolines. When the
+ * sizing asks for a number of quads the map is rescaled and rounded again until its area meets it,
+ * or a larger number (a warning) where no integers keep cones and features apart. Errors: NOMEM,
+ * CANCELLED, FAILED, those of the solver. */
 QC_API qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
                               const qc_round_options *options, qc_corner_map **out);
 

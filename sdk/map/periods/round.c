@@ -13,10 +13,11 @@
 enum {
     LARGEST_PERIOD_MATRIX = 4000, /* variables; beyond it periods are rounded directly */
     STIFFENING_ROUNDS = 12,
+    REFINEMENTS = 6,
     DENSITY_ROUNDS = 24,
     NEWTON_ROUNDS = 5,   /* of these; then scales about the best are scanned */
     WINDING_ROUNDS = 13, /* in so many, cones which wind wrong are a reason to go on */
-    REACH = 3 /* target edge lengths within which cones are kept apart                           */
+    REACH = 3            /* target edge lengths within which points and features are kept apart */
 };
 
 static const double slack = 1e-9;    /* deviations nearer than that are equal    */
@@ -34,11 +35,12 @@ typedef struct rounding {
     qc__seams *seams;
     qc__periods *periods;
     qc__separation *separation;
-    double *P;                       /* n^2, NULL = direct rounding only */
-    double *period;                  /* n: real-valued periods in lattice units */
-    double *gap;                     /* n: rounded minus scaled periods */
-    double *target, *rounded;        /* n */
-    double *symbol;                  /* n_symbols */
+    double *P;                               /* n^2, NULL = direct rounding only */
+    double *period;                          /* n: real-valued periods in lattice units */
+    double *gap;                             /* n: rounded minus scaled periods */
+    double *target, *rounded, *best_rounded; /* n */
+    qc_complex *z;  /* 3 n_faces: the frame field in combed charts, where there are features */
+    double *symbol; /* n_symbols */
     double _Complex *wedge;          /* n_wedges */
     double _Complex *F, *correction; /* n_vertices: unknown coordinates of f, and what is added */
     qc_complex *f; /* 3 n_faces: the shifted, aligned seamless map                                */
@@ -46,8 +48,8 @@ typedef struct rounding {
     double curl_energy;       /* of f, before scaling */
     double best_scale, best_miss, harmonic, harmonic_direct;
     int64_t moves, evaluations;
-    bool coarse;        /* this trial only tells the number of quads */
-    int32_t collisions; /* pairs of cones which could not be kept apart in the last trial ... */
+    bool coarse;             /* this trial only tells the number of quads */
+    int32_t collisions;      /* pairs which could not be kept apart in the last trial ... */
     int32_t best_collisions; /* ... and in the best map                                           */
     int32_t wrong, best_wrong; /* cones which wind wrong */
 } rounding;
@@ -182,6 +184,9 @@ static qc_status try_scale(rounding *r, double scale, double wanted, double *qua
     qc_complex *swap = r->best;
     r->best = r->trial;
     r->trial = swap;
+    double *integers = r->best_rounded;
+    r->best_rounded = r->rounded;
+    r->rounded = integers;
     r->best_scale = scale;
     r->best_miss = miss;
     r->best_collisions = r->collisions;
@@ -197,8 +202,8 @@ static double scale_factor(double wanted, double quads) {
 }
 
 static qc_status meet_density(rounding *r) {
-    const double wanted = r->seamless->sizing->target_quads;
-    double scale = 1.0, middle = 1.0, quads = 0;
+    const double wanted = r->options.refine * r->seamless->sizing->target_quads;
+    double scale = sqrt(r->options.refine), middle = scale, quads = 0;
     if (wanted > 0 && r->P) {
         r->coarse = true;
         const qc_status status = try_scale(r, scale, wanted, &quads);
@@ -224,6 +229,35 @@ static qc_status meet_density(rounding *r) {
             if (r->best_miss <= promised && sound) break;
         }
     }
+    return QC_OK;
+}
+
+/* Where the quads asked for are too large for the distances between singularities and features, no
+ * integers keep these apart: then smaller ones are taken, in steps of sqrt(2), up to 8 times as
+ * many.
+ */
+static qc_status find_density(rounding *r) {
+    const double asked = r->options.refine;
+    qc_status status = meet_density(r);
+    const int32_t pairs = r->best_collisions;
+    if (r->options.trial) return status;
+    for (int32_t k = 1; k <= REFINEMENTS && status == QC_OK && r->best_collisions > 0; k++) {
+        r->options.refine = asked * pow(2, 0.5 * k);
+        r->best_scale = 0;
+        status = meet_density(r);
+    }
+    if (status != QC_OK || pairs == 0) return status;
+    if (r->best_collisions > 0) {
+        r->options.refine = asked;
+        r->best_scale = 0;
+        qc__log(r->ctx, QC_LOG_WARNING,
+                "%d pairs of singularities or features are too close for this density", (int)pairs);
+        return meet_density(r);
+    }
+    qc__log(r->ctx, QC_LOG_WARNING,
+            "%d pairs of singularities or features are too close for this density; %.2g times as "
+            "many quads are made",
+            (int)pairs, r->options.refine / asked);
     return QC_OK;
 }
 
@@ -257,12 +291,13 @@ static qc_status prepare(rounding *r) {
     r->gap = QC__NEW(r->ctx, double, n);
     r->target = QC__NEW(r->ctx, double, n);
     r->rounded = QC__NEW(r->ctx, double, n);
+    r->best_rounded = QC__NEW(r->ctx, double, n);
     r->symbol = QC__NEW(r->ctx, double, qc__seams_symbols(r->seams));
     r->wedge = QC__NEW(r->ctx, double _Complex, r->seams->n_wedges);
     r->F = QC__NEW(r->ctx, double _Complex, r->mesh->n_vertices);
     r->correction = QC__NEW(r->ctx, double _Complex, r->mesh->n_vertices);
-    if (!r->period || !r->gap || !r->target || !r->rounded || !r->symbol || !r->wedge || !r->F ||
-        !r->correction)
+    if (!r->period || !r->gap || !r->target || !r->rounded || !r->best_rounded || !r->symbol ||
+        !r->wedge || !r->F || !r->correction)
         return QC_ERR_NOMEM;
     status = qc__seams_read(r->ctx, r->seams, r->f, r->period);
     if (status == QC_OK && (n > 0 || r->seams->n_levels > 0))
@@ -285,22 +320,23 @@ static qc_status make_period_matrix(rounding *r) {
     const qc__range outer = qc__range_begin(r->ctx, NULL, 0.2, 0.7);
     const qc_status status = qc__period_matrix(r->ctx, r->periods, r->P);
     qc__range_end(r->ctx, outer);
-    if (status != QC_OK) return status;
-    return qc__separation_create(r->ctx, r->seams, REACH * r->seamless->sizing->edge_length,
-                                 r->seamless->matching->pole_index4, &r->separation);
+    return status;
 }
 
 /* The frame field in combed charts. */
-static qc_status combed_frame(const rounding *r, qc_complex *z) {
+static qc_status combed_frame(rounding *r) {
     const qc_seamless_map *seamless = r->seamless;
-    const qc_status status = qc__frame_form(r->ctx, seamless->matching, seamless->sizing, z);
+    r->z = QC__NEW(r->ctx, qc_complex, 3 * (int64_t)r->mesh->n_faces);
+    if (!r->z) return QC_ERR_NOMEM;
+    const qc_status status = qc__frame_form(r->ctx, seamless->matching, seamless->sizing, r->z);
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces && status == QC_OK; c++)
-        z[c] = qc_quarter_turn(z[c], seamless->face_turn[c / 3]);
+        r->z[c] = qc_quarter_turn(r->z[c], seamless->face_turn[c / 3]);
     return status;
 }
 
 /* 1/2 int |dg - z|^2 for the aligned map, before scaling. */
-static double curl_energy(const rounding *r, const qc_complex *z) {
+static double curl_energy(const rounding *r) {
+    const qc_complex *z = r->z;
     double energy = 0;
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
         const qc_complex a = r->f[qc_next((int32_t)c)], b = r->f[qc_prev((int32_t)c)];
@@ -311,8 +347,8 @@ static double curl_energy(const rounding *r, const qc_complex *z) {
     return energy;
 }
 
-/* Raises the weights where the map folds over, and makes stiffness and period matrix anew. */
-static qc_status stiffen(rounding *r) {
+/* Raises the weights where map f folds over, and makes the stiffness matrix anew. */
+static qc_status stiffen(rounding *r, const qc_complex *f) {
     const int32_t n_faces = r->mesh->n_faces;
     if (!r->weight) {
         r->weight = QC__NEW(r->ctx, double, n_faces);
@@ -320,42 +356,78 @@ static qc_status stiffen(rounding *r) {
         for (int32_t t = 0; t < n_faces; t++) r->weight[t] = 1;
     }
     for (int32_t c = 0; c < 3 * n_faces; c++) r->cotangent[c] /= r->weight[c / 3];
-    qc__stiffen(r->mesh, r->f, r->weight);
+    qc__stiffen(r->mesh, f, r->weight);
     for (int32_t c = 0; c < 3 * n_faces; c++) r->cotangent[c] *= r->weight[c / 3];
     qc__periods_free(r->periods);
     r->periods = NULL;
-    const qc_status status =
-        qc__periods_create(r->ctx, r->seams, r->cotangent, r->options.solver, &r->periods);
-    return status == QC_OK && r->P ? qc__period_matrix(r->ctx, r->periods, r->P) : status;
+    return qc__periods_create(r->ctx, r->seams, r->cotangent, r->options.solver, &r->periods);
 }
 
-static int32_t count_folded(const rounding *r) {
+static int32_t count_folded(const rounding *r, const qc_complex *f) {
     int32_t n = 0;
-    for (int32_t t = 0; t < r->mesh->n_faces; t++) n += signed_area(r->f + 3 * (int64_t)t, 1) <= 0;
+    for (int32_t t = 0; t < r->mesh->n_faces; t++) n += signed_area(f + 3 * (int64_t)t, 1) <= 0;
     return n;
 }
 
 /* Puts the features of the seamless map on isolines, with real levels; stiffens while that makes it
  * fold over. */
 static qc_status align_features(rounding *r) {
-    qc_complex *z = QC__NEW(r->ctx, qc_complex, 3 * (int64_t)r->mesh->n_faces);
-    qc_status status = z ? combed_frame(r, z) : QC_ERR_NOMEM;
+    qc_status status = combed_frame(r);
     for (int32_t i = 0; status == QC_OK; i++) {
         if (!qc__progress(r->ctx, 0.6)) status = QC_ERR_CANCELLED;
-        if (status == QC_OK) status = qc__align(r->ctx, r->periods, r->P, z, r->f, r->period);
-        if (status != QC_OK || i == STIFFENING_ROUNDS || count_folded(r) == 0) break;
-        status = stiffen(r);
+        if (status == QC_OK) status = qc__align(r->ctx, r->periods, r->P, r->z, r->f, r->period);
+        if (status != QC_OK || i == STIFFENING_ROUNDS || count_folded(r, r->f) == 0) break;
+        status = stiffen(r, r->f);
+        if (status == QC_OK && r->P) status = qc__period_matrix(r->ctx, r->periods, r->P);
     }
-    if (status == QC_OK) r->curl_energy = curl_energy(r, z);
-    qc__free(z);
+    if (status == QC_OK) r->curl_energy = curl_energy(r);
     return status;
 }
 
+/* With the integers chosen, features let the map fold over where they lie close: it is stiffened
+ * there and solved again. Of all maps the one with the fewest wrong cones, then folded faces, is
+ * kept. */
+static qc_status unfold_features(rounding *r) {
+    if (r->seams->n_levels == 0) return QC_OK;
+    const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
+    const int32_t *index4 = r->seamless->matching->index4;
+    int32_t folded = count_folded(r, r->best), wrong = r->best_wrong, left = folded;
+    if (folded == 0) return QC_OK;
+    for (int64_t c = 0; c < n_corners; c++) {
+        r->z[c].re *= r->best_scale;
+        r->z[c].im *= r->best_scale;
+    }
+    memcpy(r->trial, r->best, sizeof *r->trial * (size_t)n_corners);
+    qc_status status = QC_OK;
+    for (int32_t i = 0; i < STIFFENING_ROUNDS && left > 0 && status == QC_OK; i++) {
+        if (!qc__progress(r->ctx, 1)) return QC_ERR_CANCELLED;
+        status = stiffen(r, r->trial);
+        if (status == QC_OK)
+            status = qc__align(r->ctx, r->periods, NULL, r->z, r->trial, r->best_rounded);
+        if (status != QC_OK) return status;
+        const int32_t winding = qc__wrong_cones(r->mesh, index4, r->trial);
+        left = count_folded(r, r->trial);
+        if (winding > wrong || (winding == wrong && left >= folded)) continue;
+        wrong = winding;
+        folded = left;
+        memcpy(r->best, r->trial, sizeof *r->best * (size_t)n_corners);
+    }
+    for (int64_t c = 0; c < n_corners; c++)
+        r->trial[c] = qc__pair(qc__complex(r->best[c]) - r->best_scale * qc__complex(r->f[c]));
+    r->harmonic = dirichlet_energy(r, r->trial);
+    return status;
+}
+
+/* Then finds what has to stay apart. */
 static qc_status align(rounding *r) {
     r->curl_energy = r->seamless->curl_energy;
     const qc_status status = r->seams->n_levels > 0 ? align_features(r) : QC_OK;
-    if (status == QC_OK) qc__periods_split(r->seams, r->f, r->wedge, r->F);
-    return status;
+    if (status != QC_OK) return status;
+    qc__periods_split(r->seams, r->f, r->wedge, r->F);
+    if (!r->P) return QC_OK;
+    return qc__separation_create(
+        r->ctx, r->seams, r->seamless->matching->axis, r->seamless->matching->pole_index4, r->f,
+        REACH * r->seamless->sizing->edge_length / sqrt(r->options.refine), &r->separation);
 }
 
 /* The features in the charts of the map. */
@@ -449,20 +521,20 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
         memcpy(&r.options, options,
                options->struct_size < sizeof r.options ? options->struct_size : sizeof r.options);
     if (!(r.options.tolerance > 0)) r.options.tolerance = 0.02;
+    if (!(r.options.refine > 0)) r.options.refine = 1;
     qc_status status = refuse_impossible(&r);
     if (status == QC_OK) status = prepare(&r);
     if (status == QC_OK) status = make_period_matrix(&r);
     if (status == QC_OK) status = align(&r);
-    if (status == QC_OK) status = meet_density(&r);
-    if (status == QC_OK && r.best_collisions > 0 && !r.options.trial)
-        qc__log(ctx, QC_LOG_WARNING, "%d pairs of cones are too close for this density",
-                (int)r.best_collisions);
+    if (status == QC_OK) status = find_density(&r);
+    if (status == QC_OK) status = unfold_features(&r);
     if (status == QC_OK) status = publish(&r, out);
     qc__separation_free(r.separation);
     qc__periods_free(r.periods);
     qc__seams_free(r.seams);
-    void *const blocks[] = {r.weight, r.cotangent, r.f,       r.trial,  r.best,  r.P, r.period,
-                            r.gap,    r.target,    r.rounded, r.symbol, r.wedge, r.F, r.correction};
+    void *const blocks[] = {r.weight, r.cotangent, r.f,      r.trial,     r.best,         r.P,
+                            r.period, r.gap,       r.target, r.rounded,   r.best_rounded, r.z,
+                            r.symbol, r.wedge,     r.F,      r.correction};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

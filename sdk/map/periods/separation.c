@@ -1,4 +1,4 @@
-/* Which cones must be kept apart, and the forms which measure it (see separation.h). */
+/* What must be kept apart, and the forms which measure it (see separation.h). */
 #include "sdk/map/periods/separation.h"
 #include <math.h>
 #include <stdlib.h>
@@ -6,14 +6,14 @@
 
 void qc__separation_free(qc__separation *s) {
     if (!s) return;
-    qc__free(s->cone);
+    qc__free(s->vertex);
     qc__free(s->start);
     qc__free(s->variable);
     qc__free(s->value);
     qc__free(s);
 }
 
-typedef struct bridge { /* mesh edge joining the cells of two cones */
+typedef struct bridge { /* mesh edge joining the cells of two sites */
     int32_t a, b, edge; /* a < b */
     double length;
 } bridge;
@@ -21,13 +21,16 @@ typedef struct bridge { /* mesh edge joining the cells of two cones */
 typedef struct finder {
     qc_ctx *ctx;
     const qc__seams *seams;
+    const int8_t *axis;
+    const qc_complex *map;
+    int32_t *site; /* n_vertices, -1: points by number, then pieces of features between them */
     double *distance;
-    int32_t *predecessor; /* edge towards the cone */
-    int32_t *cell;        /* nearest cone of a vertex, -1 */
+    int32_t *predecessor; /* edge towards the site */
+    int32_t *cell;        /* nearest site of a vertex, -1 */
     bridge *bridges;
     int64_t n_bridges, capacity;
     double _Complex *sum; /* n_free, dense accumulator of one form */
-    int64_t value_capacity, variable_capacity;
+    int64_t value_capacity, variable_capacity, vertex_capacity, start_capacity;
 } finder;
 
 static int32_t other_end(const qc_mesh *mesh, int32_t edge, int32_t v) {
@@ -37,21 +40,43 @@ static int32_t other_end(const qc_mesh *mesh, int32_t edge, int32_t v) {
 
 /* --- cells ------------------------------------------------------------------------------------ */
 
-static qc_status grow_cells(finder *f) {
-    const qc__seams *s = f->seams;
-    const qc_mesh *mesh = s->mesh;
-    uint8_t *source = QC__ZERO(f->ctx, uint8_t, mesh->n_vertices);
-    f->distance = QC__NEW(f->ctx, double, mesh->n_vertices);
-    f->predecessor = QC__NEW(f->ctx, int32_t, mesh->n_vertices);
-    f->cell = QC__NEW(f->ctx, int32_t, mesh->n_vertices);
-    qc_status status = source && f->distance && f->predecessor && f->cell ? QC_OK : QC_ERR_NOMEM;
-    if (status == QC_OK) {
-        for (int32_t i = 0; i < s->n_cones; i++) source[s->cone_vertex[i]] = 1;
-        status = qc_mesh_shortest_paths(f->ctx, mesh, NULL, source, f->distance, f->predecessor);
+/* Pieces of features without the points between them become sites. */
+static qc_status find_pieces(finder *f) {
+    const qc_mesh *mesh = f->seams->mesh;
+    int32_t *parent = QC__NEW(f->ctx, int32_t, mesh->n_vertices); /* -1: on no feature */
+    if (!parent) return QC_ERR_NOMEM;
+    memset(parent, -1, sizeof *parent * (size_t)mesh->n_vertices);
+    for (int64_t i = 0; i < 2 * (int64_t)mesh->n_edges; i++)
+        if (f->axis[i / 2] >= 0) parent[mesh->edge_vertex[i]] = mesh->edge_vertex[i];
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        int32_t a = mesh->edge_vertex[2 * (int64_t)e], b = mesh->edge_vertex[2 * (int64_t)e + 1];
+        if (f->axis[e] < 0 || f->site[a] >= 0 || f->site[b] >= 0) continue;
+        for (; parent[a] != a; a = parent[a]) parent[a] = parent[parent[a]];
+        for (; parent[b] != b; b = parent[b]) parent[b] = parent[parent[b]];
+        parent[a < b ? b : a] = a < b ? a : b;
     }
+    int32_t n = f->seams->n_cones;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        if (parent[v] < 0 || f->site[v] >= 0) continue;
+        int32_t root = v;
+        while (parent[root] != root) root = parent[root];
+        if (f->site[root] < 0) f->site[root] = n++;
+        f->site[v] = f->site[root];
+    }
+    qc__free(parent);
+    return QC_OK;
+}
+
+static qc_status grow_cells(finder *f) {
+    const qc_mesh *mesh = f->seams->mesh;
+    uint8_t *source = QC__NEW(f->ctx, uint8_t, mesh->n_vertices);
+    if (!source) return QC_ERR_NOMEM;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) source[v] = f->site[v] >= 0;
+    const qc_status status =
+        qc_mesh_shortest_paths(f->ctx, mesh, NULL, source, f->distance, f->predecessor);
     qc__free(source);
     if (status != QC_OK) return status;
-    for (int32_t v = 0; v < mesh->n_vertices; v++) f->cell[v] = s->vertex_cone[v];
+    memcpy(f->cell, f->site, sizeof *f->cell * (size_t)mesh->n_vertices);
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         int32_t root = v;
         while (f->cell[root] < 0 && f->predecessor[root] >= 0)
@@ -79,14 +104,16 @@ static double edge_length(const qc_mesh *mesh, int32_t e) {
                 (p[2] - q[2]) * (p[2] - q[2]));
 }
 
-/* The shortest bridge of each pair of touching cells. */
-static qc_status find_bridges(finder *f, double reach) {
+/* The shortest bridge of each pair of touching cells, one of them at least beyond the first ones.
+ */
+static qc_status find_bridges(finder *f, double reach, int32_t beyond) {
     const qc_mesh *mesh = f->seams->mesh;
+    f->n_bridges = 0;
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         const int32_t v = mesh->edge_vertex[2 * (int64_t)e];
         const int32_t w = mesh->edge_vertex[2 * (int64_t)e + 1];
         const int32_t a = f->cell[v], b = f->cell[w];
-        if (a < 0 || b < 0 || a == b) continue;
+        if (a < 0 || b < 0 || a == b || (a < beyond && b < beyond)) continue;
         const double length = f->distance[v] + f->distance[w] + edge_length(mesh, e);
         if (!(length < reach)) continue;
         if (!qc__reserve(f->ctx, (void **)&f->bridges, &f->capacity, f->n_bridges + 1,
@@ -118,7 +145,7 @@ static void add_translation(finder *f, int32_t segment, double _Complex factor) 
     add_symbol(f, qc__translation_symbol(segment, 1), factor * I);
 }
 
-/* The value at corner c of a vertex with both coordinates given. */
+/* What is given of the value at corner c. */
 static void add_corner(finder *f, int32_t c, int32_t turn, double _Complex sign) {
     const qc__seams *s = f->seams;
     const int32_t w = s->corner_wedge[c], row = 2 * s->vertex_given[s->mesh->face_vertex[c]];
@@ -159,17 +186,26 @@ static int32_t corner_in_face(const qc_mesh *mesh, int32_t c, int32_t v) {
     return -1;
 }
 
-/* Follows the path cone a - bridge - cone b: edges towards a reversed, the bridge, edges towards b.
- * The form p_b - p_a in the chart of the first face: i^-turn (f_b - T) - f_a. */
-static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t *path) {
-    const qc__seams *s = f->seams;
-    const qc_mesh *mesh = s->mesh;
+/* Parts (1 re, 2 im, 3 both) of the value at corner c, in a chart `turn` before that of its face,
+ * which are given. */
+static int32_t given_parts(const qc__seams *s, int32_t c, int32_t turn) {
+    const int32_t v = s->mesh->face_vertex[c], a = s->wedge_turn[s->corner_wedge[c]];
+    int32_t parts = 0;
+    for (int32_t k = 0; k < 2; k++)
+        if (qc__seams_is_given(s, v, k)) parts |= 1 << ((k + a + turn) & 1);
+    return parts;
+}
+
+/* Edges from a site to a site through the bridge: reversed to the first one, then on to the other.
+ * Returns their number; *v is the first site. */
+static int32_t find_path(const finder *f, const bridge *link, int32_t *v, int32_t *path) {
+    const qc_mesh *mesh = f->seams->mesh;
     const int32_t *ends = mesh->edge_vertex + 2 * (int64_t)link->edge;
     const bool forward = f->cell[ends[0]] == link->a;
     int32_t n = 0;
-    for (int32_t v = ends[forward ? 0 : 1]; s->vertex_cone[v] < 0; n++) {
-        path[n] = f->predecessor[v];
-        v = other_end(mesh, path[n], v);
+    for (*v = ends[forward ? 0 : 1]; f->site[*v] < 0; n++) {
+        path[n] = f->predecessor[*v];
+        *v = other_end(mesh, path[n], *v);
     }
     for (int32_t i = 0, j = n - 1; i < j; i++, j--) {
         const int32_t swap = path[i];
@@ -177,31 +213,52 @@ static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t 
         path[j] = swap;
     }
     path[n++] = link->edge;
-    for (int32_t v = ends[forward ? 1 : 0]; s->vertex_cone[v] < 0; n++) {
-        path[n] = f->predecessor[v];
-        v = other_end(mesh, path[n], v);
+    for (int32_t w = ends[forward ? 1 : 0]; f->site[w] < 0; n++) {
+        path[n] = f->predecessor[w];
+        w = other_end(mesh, path[n], w);
     }
+    return n;
+}
+
+/* Follows the path from site a to site b. The form f_b - f_a in the chart of the first face,
+ * i^-turn (f_b - T) - f_a, is left in the sum; *parts tells which parts of it are one. Across a
+ * feature the path must lead rather than along it. */
+static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t *path,
+                         int32_t ends[2], int32_t *parts) {
+    const qc__seams *s = f->seams;
+    const qc_mesh *mesh = s->mesh;
+    const int32_t n = find_path(f, link, &ends[0], path);
     walk->turn = walk->n = 0;
-    int32_t v = s->cone_vertex[link->a];
-    const int32_t first = mesh->edge_halfedge[2 * (int64_t)path[0]];
-    int32_t c = corner_in_face(mesh, first, v);
+    int32_t v = ends[0];
+    int32_t c = corner_in_face(mesh, mesh->edge_halfedge[2 * (int64_t)path[0]], v);
+    double _Complex way = 0;
     add_corner(f, c, 0, -1.0);
+    *parts = given_parts(s, c, 0);
     for (int32_t i = 0; i < n; i++) {
         if (i > 0 && !turn_to_edge(f, walk, &c, path[i])) return QC_ERR_NOMEM;
         v = other_end(mesh, path[i], v);
-        c = corner_in_face(mesh, c, v);
+        const int32_t to = corner_in_face(mesh, c, v);
+        way += qc__turn(qc__complex(f->map[to]) - qc__complex(f->map[c]), -walk->turn);
+        c = to;
     }
+    ends[1] = v;
     add_corner(f, c, -walk->turn, 1.0);
     for (int32_t i = 0; i < walk->n; i++)
         add_translation(f, walk->segment[i], -qc__turn(1.0, walk->term_turn[i] - walk->turn));
+    *parts &= given_parts(s, c, walk->turn);
+    if ((*parts == 1 && fabs(creal(way)) < fabs(cimag(way))) ||
+        (*parts == 2 && fabs(cimag(way)) < fabs(creal(way))))
+        *parts = 0;
     return QC_OK;
 }
 
-static qc_status store_form(finder *f, qc__separation *s, int32_t pair) {
-    int64_t n = s->start[pair];
-    const int32_t n_free = f->seams->n_free;
-    for (int32_t j = 0; j < n_free; j++) {
-        const double _Complex value = f->sum[j];
+/* Appends the parts of the sum, unless they vanish, and clears it. */
+static qc_status store_form(finder *f, qc__separation *s, const int32_t ends[2], int32_t parts) {
+    const int64_t start = s->start[s->n];
+    int64_t n = start;
+    for (int32_t j = 0; j < f->seams->n_free; j++) {
+        const double _Complex value =
+            (parts & 1 ? creal(f->sum[j]) : 0) + (parts & 2 ? cimag(f->sum[j]) : 0) * I;
         f->sum[j] = 0;
         if (creal(value) == 0 && cimag(value) == 0) continue;
         if (!qc__reserve(f->ctx, (void **)&s->variable, &f->variable_capacity, n + 1,
@@ -211,7 +268,10 @@ static qc_status store_form(finder *f, qc__separation *s, int32_t pair) {
         s->variable[n] = j;
         s->value[n++] = value;
     }
-    s->start[pair + 1] = n;
+    if (n == start && parts != 3) return QC_OK;
+    s->vertex[2 * s->n] = ends[0];
+    s->vertex[2 * s->n + 1] = ends[1];
+    s->start[++s->n] = n;
     return QC_OK;
 }
 
@@ -223,47 +283,63 @@ static qc_status make_pole_forms(finder *f, const int32_t *pole_index4, qc__sepa
     for (int32_t i = 0; i < seams->n_poles && pole_index4 && status == QC_OK; i++) {
         if (pole_index4[seams->cone_pole[i]] != 4) continue;
         const int32_t p = qc__position_symbol(seams, seams->n_cones + i, 0);
-        s->cone[2 * (int64_t)s->n] = s->cone[2 * (int64_t)s->n + 1] = -1;
+        const int32_t none[2] = {-1, -1};
         add_symbol(f, p, unit * (1.0 - I));
         add_symbol(f, p + 1, unit * (1.0 + I));
-        status = store_form(f, s, s->n++);
+        status = store_form(f, s, none, 3);
     }
     return status;
 }
 
 static qc_status make_forms(finder *f, qc__separation *s) {
-    const int64_t n = f->n_bridges, most = n + f->seams->n_poles;
-    s->cone = QC__NEW(f->ctx, int32_t, 2 * most);
-    s->start = QC__ZERO(f->ctx, int64_t, most + 1);
-    f->sum = QC__ZERO(f->ctx, double _Complex, f->seams->n_free);
+    const int64_t n = s->n + f->n_bridges + f->seams->n_poles;
+    if (!qc__reserve(f->ctx, (void **)&s->vertex, &f->vertex_capacity, 2 * n + 1,
+                     sizeof *s->vertex) ||
+        !qc__reserve(f->ctx, (void **)&s->start, &f->start_capacity, n + 1, sizeof *s->start))
+        return QC_ERR_NOMEM;
+    if (s->n == 0) s->start[0] = 0;
     int32_t *path = QC__NEW(f->ctx, int32_t, f->seams->mesh->n_vertices + 1);
     qc__walk walk = {0};
-    qc_status status = s->cone && s->start && f->sum && path ? QC_OK : QC_ERR_NOMEM;
-    for (int64_t i = 0; i < n && status == QC_OK; i++) {
-        s->cone[2 * i] = f->bridges[i].a;
-        s->cone[2 * i + 1] = f->bridges[i].b;
-        status = develop(f, &f->bridges[i], &walk, path);
-        if (status == QC_OK) status = store_form(f, s, (int32_t)i);
-        s->n = (int32_t)i + 1;
+    qc_status status = path ? QC_OK : QC_ERR_NOMEM;
+    for (int64_t i = 0; i < f->n_bridges && status == QC_OK; i++) {
+        int32_t ends[2], parts = 0;
+        status = develop(f, &f->bridges[i], &walk, path, ends, &parts);
+        if (status == QC_OK) status = store_form(f, s, ends, parts);
     }
     qc__walk_free(&walk);
     qc__free(path);
     return status;
 }
 
-qc_status qc__separation_create(qc_ctx *ctx, const qc__seams *seams, double reach,
-                                const int32_t *pole_index4, qc__separation **out) {
-    finder f = {.ctx = ctx, .seams = seams};
+/* Pairs of points; then, with features, pairs of sites which are not both points. */
+static qc_status find_pairs(finder *f, double reach, qc__separation *s) {
+    const int32_t n_vertices = f->seams->mesh->n_vertices;
+    f->sum = QC__ZERO(f->ctx, double _Complex, f->seams->n_free);
+    f->site = QC__NEW(f->ctx, int32_t, n_vertices);
+    f->distance = QC__NEW(f->ctx, double, n_vertices);
+    f->predecessor = QC__NEW(f->ctx, int32_t, n_vertices);
+    f->cell = QC__NEW(f->ctx, int32_t, n_vertices);
+    if (!f->sum || !f->site || !f->distance || !f->predecessor || !f->cell) return QC_ERR_NOMEM;
+    memcpy(f->site, f->seams->vertex_cone, sizeof *f->site * (size_t)n_vertices);
+    qc_status status = QC_OK;
+    for (int32_t pass = 0; pass < (f->axis ? 2 : 1) && status == QC_OK; pass++) {
+        if (pass == 1) status = find_pieces(f);
+        if (status == QC_OK) status = grow_cells(f);
+        if (status == QC_OK) status = find_bridges(f, reach, pass == 1 ? f->seams->n_cones : 0);
+        if (status == QC_OK) status = make_forms(f, s);
+    }
+    return status;
+}
+
+qc_status qc__separation_create(qc_ctx *ctx, const qc__seams *seams, const int8_t *axis,
+                                const int32_t *pole_index4, const qc_complex *map, double reach,
+                                qc__separation **out) {
+    finder f = {.ctx = ctx, .seams = seams, .axis = axis, .map = map};
     qc__separation *s = QC__ZERO(ctx, qc__separation, 1);
-    qc_status status = s ? grow_cells(&f) : QC_ERR_NOMEM;
-    if (status == QC_OK) status = find_bridges(&f, reach);
-    if (status == QC_OK) status = make_forms(&f, s);
+    qc_status status = s ? find_pairs(&f, reach, s) : QC_ERR_NOMEM;
     if (status == QC_OK) status = make_pole_forms(&f, pole_index4, s);
-    qc__free(f.distance);
-    qc__free(f.predecessor);
-    qc__free(f.cell);
-    qc__free(f.bridges);
-    qc__free(f.sum);
+    void *const blocks[] = {f.site, f.distance, f.predecessor, f.cell, f.bridges, f.sum};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     if (status != QC_OK) {
         qc__separation_free(s);
         return status;

@@ -159,6 +159,27 @@ static void test_energies(void **state) {
     for_all(energies_add_up);
 }
 
+/* Where quads are as large as the gaps between features, every gap keeps one row of them. */
+static void features_stay_apart(void **state) {
+    (void)state;
+    qc_ctx *ctx = context(1);
+    static const double quads[] = {12, 20, 40};
+    for (int i = 0; i < 3; i++)
+        for (size_t k = 0; k < sizeof quads / sizeof *quads; k++) {
+            setting *s = aligned_setting(ctx, &CASES[i], quads[k]);
+            qc_corner_map *map = rounded(s);
+            for (int32_t t = 0; t < s->mesh->n_faces; t++) {
+                const complex_t a = corner(map->uv, 3 * t + 1) - corner(map->uv, 3 * t);
+                const complex_t b = corner(map->uv, 3 * t + 2) - corner(map->uv, 3 * t);
+                if (!(cimag(conj(a) * b) > 0))
+                    fail_msg("%s, %g quads: face %d is folded", CASES[i].name, quads[k], (int)t);
+            }
+            qc_object_release(map);
+            setting_free(s);
+        }
+    qc_ctx_free(ctx);
+}
+
 static void test_threads(void **state) {
     (void)state;
     for (int i = 0; i < N_CASES; i++) {
@@ -185,7 +206,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_count),    cmocka_unit_test(test_integers),
         cmocka_unit_test(test_rounding), cmocka_unit_test(test_energies),
-        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_threads),  cmocka_unit_test(features_stay_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

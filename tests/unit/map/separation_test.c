@@ -26,13 +26,14 @@ static problem *problem_create(qc_ctx *ctx, const surface_case *c, double quads,
     p->n = p->seams->n_free;
     p->reach = 3 * p->s->sizing->edge_length;
     must(ctx, qc__periods_create(ctx, p->seams, p->s->stiffness, NULL, &p->periods));
-    must(ctx, qc__separation_create(ctx, p->seams, p->reach, NULL, &p->separation));
     p->P = ARRAY(double, (int64_t)p->n * p->n);
     p->t = ARRAY(double, p->n);
     must(ctx, qc__period_matrix(ctx, p->periods, p->P));
     qc_complex *f = ARRAY(qc_complex, 3 * (int64_t)p->s->mesh->n_faces);
     memcpy(f, p->s->map->f, sizeof *f * 3 * (size_t)p->s->mesh->n_faces);
     must(ctx, qc__seams_read(ctx, p->seams, f, p->t));
+    must(ctx, qc__separation_create(ctx, p->seams, p->s->matching->axis, NULL, f, p->reach,
+                                    &p->separation));
     if (map)
         *map = f;
     else
@@ -147,9 +148,9 @@ static void forms_measure_the_vector_between_cones(void **state) {
         must(ctx, qc_mesh_shortest_paths(ctx, p->s->mesh, NULL, cones, nearest, NULL));
         for (int32_t pair = 0; pair < s->n; pair++) {
             int32_t n = 0, end = -1;
-            const int32_t a = p->seams->cone_vertex[s->cone[2 * pair]];
-            const int32_t b = p->seams->cone_vertex[s->cone[2 * pair + 1]];
-            assert_true(s->cone[2 * pair] < s->cone[2 * pair + 1]);
+            const int32_t a = s->vertex[2 * pair];
+            const int32_t b = s->vertex[2 * pair + 1];
+            assert_true(a < b);
             const double length = shortest_path(p->s, nearest, a, b, &n, path);
             if (!(length < p->reach)) continue;
             const complex_t wanted = develop(p->s, f, a, n, path, &end);
@@ -189,7 +190,9 @@ static void neighbours_are_found(void **state) {
             if (hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]) >= p->reach) continue;
             int32_t count = 0;
             for (int32_t k = 0; k < p->separation->n; k++) {
-                const int32_t *pair = p->separation->cone + 2 * k;
+                const int32_t *ends = p->separation->vertex + 2 * k;
+                const int32_t pair[2] = {p->seams->vertex_cone[ends[0]],
+                                         p->seams->vertex_cone[ends[1]]};
                 count += (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
             }
             assert_int_equal(count, 1);
