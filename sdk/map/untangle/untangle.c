@@ -13,7 +13,7 @@
 static const double good_det = 1e-4; /* faces below it count as folded           */
 static const double longest_step = 0.125, shortest_step = 0.125 / 8; /* of the continuation */
 /* Evaluations of the whole map, at most, on the way from the relaxed map and at its end. */
-static const int64_t walk_effort = 2000, end_effort = 1500;
+static const int64_t walk_effort = 8000, end_effort = 8000;
 enum {
     GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings */
 };
