@@ -3,9 +3,10 @@ PREFIX ?= /usr/local
 MESH   ?=
 QUADS  ?= 5000
 PARTS  ?=
+FIGURES ?=
 JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
 
-.PHONY: build setup browser demo check bench results format check-format install clean
+.PHONY: build setup browser demo check bench results gallery format check-format install clean
 
 build: setup
 	cmake --preset release >/dev/null
@@ -45,6 +46,11 @@ bench: build
 # PARTS="table-6.1 acceptance" for some of it.
 results: build
 	sh tests/bench/thesis/results.sh build/bin docs/results.md docs/images/results $(PARTS)
+
+# The figures of the papers made again: docs/gallery/reports/index.html, small pictures and docs/gallery/README.md.
+# FIGURES="2007-02 thesis-4.4-best" for some.
+gallery: build browser
+	python3 docs/gallery/make.py build/bin/quadcover $(FIGURES)
 
 # Formatting of all tracked sources by .clang-format.
 format check-format: setup

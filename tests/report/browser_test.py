@@ -7,6 +7,7 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../bindings/report"))
 import browser as chromium
+import gallery
 from page import run
 
 COLUMNS, ROWS = 32, 24
@@ -110,6 +111,19 @@ def large(page, program):
     assert page.run(LOOK)["dark"] > 1000
 
 
+def folder_becomes_a_gallery(page):
+    """A card with a picture for each report, which leads there."""
+    assert gallery.make_index(".", "Two <runs>", page) == 2
+    page.open("index.html")
+    is_quiet(page, "index.html")
+    assert page.run("document.querySelector('h1').innerText") == "Two <runs>"
+    assert page.run("[...document.querySelectorAll('.cards a')].map((a) => a.getAttribute('href'))") == \
+        ["knot.html", "large.html"]
+    pictures = page.run("Promise.all([...document.images].map(async (i) => { await i.decode(); return i.naturalWidth; }))")
+    assert len(pictures) == 2 and min(pictures) > 100, pictures
+    assert "irregular vertices" in page.run("document.querySelector('.cards').innerText")
+
+
 def main(program):
     path = chromium.find()
     if not path:
@@ -126,6 +140,7 @@ def main(program):
         turns(page)
         is_quiet(page, "knot.html")
         large(page, program)
+        folder_becomes_a_gallery(page)
 
 
 main(os.path.abspath(sys.argv[1]))
