@@ -1,6 +1,6 @@
 #!/bin/sh
 # install.sh SOURCE BUILD: installs BUILD into a scratch prefix and uses it from outside. Environment:
-# CMAKE, CC, PKG_CONFIG, SANITIZE, LIBDIR, MUMPS (not empty: the plugin was built).
+# CMAKE, CC, PKG_CONFIG, SANITIZE, LIBDIR, PLUGINS (those which were built).
 set -e
 source=$1 build=$2 here=$(dirname "$0")
 scratch=$(mktemp -d)
@@ -40,14 +40,14 @@ for kind in plugin headers_only; do
     grep -q '^qc.hodge ' "$scratch/list" || die "built-in stages are missing"
 done
 
-if [ -n "$MUMPS" ]; then
-    say "plugin mumps from the installed SDK"
-    configure "$source/plugins/mumps" mumps
-    names=$(nm -D --defined-only "$scratch/mumps/qc_mumps.so" | awk '$2 != "A" { print $3 }')
-    [ "$names" = qc_plugin_1 ] || die "the plugin mumps exports: $names"
-    [ -f "$prefix/$LIBDIR/quadcover/plugins/qc_mumps.so" ] || die "the plugin mumps is not installed"
-    [ -x "$prefix/bin/qc-mumps-worker" ] || die "its worker is not installed"
-fi
+for plugin in $PLUGINS; do
+    say "plugin $plugin from the installed SDK"
+    configure "$source/plugins/$plugin" "$plugin"
+    names=$(nm -D --defined-only "$scratch/$plugin/qc_$plugin.so" | awk '$2 != "A" { print $3 }')
+    [ "$names" = qc_plugin_1 ] || die "the plugin $plugin exports: $names"
+    [ -f "$prefix/$LIBDIR/quadcover/plugins/qc_$plugin.so" ] || die "the plugin $plugin is not installed"
+    [ "$plugin" != mumps ] || [ -x "$prefix/bin/qc-mumps-worker" ] || die "its worker is not installed"
+done
 
 if [ -n "$PKG_CONFIG" ]; then
     say "the backend of docs/solvers.md"
