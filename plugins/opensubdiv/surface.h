@@ -1,4 +1,4 @@
-/* Catmull-Clark surfaces by OpenSubdiv behind a C interface: what surface.cpp exports to the C
+/* Catmull-Clark surfaces by OpenSubdiv behind a C interface: what the C++ files export to the C
  * files. No exception leaves these functions; they answer QC_ERR_NOMEM or QC_ERR_FAILED. */
 #ifndef QO_SURFACE_H
 #define QO_SURFACE_H
