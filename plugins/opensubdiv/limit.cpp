@@ -116,7 +116,9 @@ void copy_tangents(const qo_surface &s, const std::vector<Point> &t1, const std:
         if (jacobian) jacobian[v] = smooth && n != 4 ? least_sine(n, a, b) : sine(a, b);
         if (!normal) continue;
         cross(a, b, normal + 3 * v);
-        const double length = norm(normal + 3 * v);
+        const bool planes =
+            last.GetVertexRule(v) > Sdc::Crease::RULE_DART && !last.IsVertexBoundary(v);
+        const double length = planes ? 0 : norm(normal + 3 * v);
         for (int k = 0; k < 3; k++) normal[3 * v + k] = length > 0 ? normal[3 * v + k] / length : 0;
     }
 }

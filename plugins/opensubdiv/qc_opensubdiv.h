@@ -26,11 +26,12 @@ typedef struct qc_subdivision_report {
     double distance, mean_distance; /* largest, mean over the samples                      */
     double cage_distance;           /* of the cage vertices themselves to the mesh, largest */
     double vertex_distance;         /* largest of a limit position from its place in the input    */
-    double jacobian;         /* smallest scaled Jacobian of the limit surface at the samples, < 0
-                                where its normal is opposed to that of the mesh            */
-    int64_t n_reversed;      /* samples with a negative one                                */
-    double normal_deviation; /* largest angle to the normal of the mesh, radians           */
-    int32_t rounds;          /* of the fit, 0 = none                                       */
+    double jacobian;    /* smallest scaled Jacobian of the limit surface at the samples, < 0
+                           where its normal is opposed to that of the mesh            */
+    int64_t n_reversed; /* samples with a negative one                                */
+    double
+        normal_deviation; /* largest angle to the normal of the mesh, radians, where there is one */
+    int32_t rounds;       /* of the fit, 0 = none                                       */
     double distance_before, mean_distance_before, vertex_distance_before; /* the fit       */
 } qc_subdivision_report;
 

@@ -36,8 +36,8 @@ qc_status qo_surface_midpoints(qc_ctx *ctx, const qo_surface *surface, const dou
                                double *position);
 /* The limit surface at the samples: position and unit normal (3 each), and the smallest scaled
  * Jacobian of the corners there: the sine of the angle between the derivatives along neighbouring
- * edges. normal 0, jacobian 0 where the surface has no tangent plane. normal and jacobian may be
- * NULL. */
+ * edges. normal 0 where the surface has no tangent plane, or several: on creases, where
+ * the Jacobian is that of one side. normal and jacobian may be NULL. */
 qc_status qo_surface_limit(qc_ctx *ctx, const qo_surface *surface, const double *control,
                            double *position, double *normal, double *jacobian);
 

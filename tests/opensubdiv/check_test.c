@@ -153,6 +153,7 @@ static void creases_keep_a_cube(void **state) {
     assert_near(r->vertex_distance, 0, 1e-12);
     assert_near(r->distance, 0, 1e-12);
     assert_near(r->jacobian, 1, 1e-12);
+    assert_near(r->normal_deviation, 0, 1e-6); /* no normal on the creases */
     assert_int_equal(r->n_reversed, 0);
     qc_bag_free(bag);
 }
