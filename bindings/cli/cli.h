@@ -125,6 +125,16 @@ int cli_write_text(const char *path, const char *text);
 /* Reads a mesh; EXIT_INPUT on failure. */
 int cli_read_mesh(cli_session *session, const char *path, qc_polygon_mesh **out);
 
+typedef struct cli_rays {
+    int32_t n_strokes, n_rays;
+    int32_t *offset; /* n_strokes + 1 */
+    double *ray;     /* 6 n_rays: origin, direction */
+} cli_rays;
+/* Reads camera rays; EXIT_INPUT on failure. Free them in any case. */
+int cli_read_rays(const char *path, cli_rays *out);
+void cli_rays_free(cli_rays *rays);
+/* The ray caster offered last: that of a plugin when one is loaded. All give the same answers. */
+const qc_ray_caster *cli_ray_caster(const qc_registry *registry);
 /* Traces the rays of a file onto *mesh, which is replaced by one with the strokes as lines. */
 int cli_add_strokes(cli_session *session, const qc_registry *registry, const char *path,
                     qc_polygon_mesh **mesh);
@@ -164,6 +174,7 @@ int cli_remesh(int argc, const char **argv);
 int cli_extract(int argc, const char **argv);
 int cli_field(int argc, const char **argv);
 int cli_check(int argc, const char **argv);
+int cli_pick(int argc, const char **argv);
 int cli_stages(int argc, const char **argv);
 int cli_shape(int argc, const char **argv);
 

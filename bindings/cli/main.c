@@ -17,6 +17,7 @@ static const struct command {
     {"extract", cli_extract, "quads of an integer-seamless parameterization (OBJ with vt)"},
     {"field", cli_field, "a smooth cross field of a triangle mesh"},
     {"check", cli_check, "validity and quality of a quad mesh"},
+    {"pick", cli_pick, "what rays meet on a surface"},
     {"stages", cli_stages, "the registered stages, their ports and parameters"},
     {"shape", cli_shape, "one of the procedural surfaces"},
     {"batch", batch, "many meshes (not built yet)"},

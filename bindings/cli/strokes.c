@@ -1,80 +1,13 @@
-/* Guide strokes from a file of camera rays, as lines of the input:
- * { "strokes": [ [ [ox, oy, oz, dx, dy, dz], ... ], ... ] }, origin and direction of each ray. */
+/* Guide strokes from camera rays, as lines of the input. */
 #include "bindings/cli/cli.h"
-#include <jansson.h>
-#include <stdlib.h>
-
-typedef struct rays {
-    int32_t n_strokes, n_rays;
-    int32_t *offset; /* n_strokes + 1 */
-    double *ray;     /* 6 n_rays */
-} rays;
-
-static bool read_ray(const json_t *numbers, double *ray) {
-    if (json_array_size(numbers) != 6) return false;
-    for (size_t k = 0; k < 6; k++) {
-        if (!json_is_number(json_array_get(numbers, k))) return false;
-        ray[k] = json_number_value(json_array_get(numbers, k));
-    }
-    return true;
-}
-
-static int read_stroke(const char *path, const json_t *stroke, size_t i, rays *out) {
-    if (!json_is_array(stroke))
-        return cli_error(EXIT_INPUT, "%s: stroke %zu is not a list of rays", path, i);
-    for (size_t j = 0; j < json_array_size(stroke); j++)
-        if (!read_ray(json_array_get(stroke, j), out->ray + 6 * (size_t)out->n_rays++))
-            return cli_error(EXIT_INPUT,
-                             "%s: ray %zu of stroke %zu: use 6 numbers, origin and direction", path,
-                             j, i);
-    out->offset[i + 1] = out->n_rays;
-    return EXIT_DONE;
-}
-
-static int read_strokes(const char *path, const json_t *root, rays *out) {
-    const json_t *strokes = json_object_get(root, "strokes");
-    const size_t n = json_array_size(strokes);
-    size_t total = 0;
-    for (size_t i = 0; i < n; i++) total += json_array_size(json_array_get(strokes, i));
-    if (total < 2 || total > INT32_MAX / 8)
-        return cli_error(EXIT_INPUT,
-                         "%s: no strokes; write {\"strokes\": [[[ox, oy, oz, dx, dy, dz], ...]]}",
-                         path);
-    out->n_strokes = (int32_t)n;
-    out->offset = calloc(n + 1, sizeof *out->offset);
-    out->ray = malloc(6 * total * sizeof *out->ray);
-    int status =
-        out->offset && out->ray ? EXIT_DONE : cli_error(EXIT_FAILED, "%s: out of memory", path);
-    for (size_t i = 0; i < n && status == EXIT_DONE; i++)
-        status = read_stroke(path, json_array_get(strokes, i), i, out);
-    return status;
-}
-
-static int read_file(const char *path, rays *out) {
-    json_error_t error;
-    json_t *root = json_load_file(path, 0, &error);
-    const int status = root
-                           ? read_strokes(path, root, out)
-                           : cli_error(EXIT_INPUT, "%s: line %d: %s", path, error.line, error.text);
-    json_decref(root);
-    return status;
-}
-
-/* The caster offered last: that of a plugin when one is loaded. All give the same answers. */
-static const qc_ray_caster *latest_caster(const qc_registry *registry) {
-    const qc_interface *latest = NULL, *next;
-    for (uint32_t i = 0; (next = qc_registry_interface(registry, QC_RAY_CASTER_ID, i)) != NULL; i++)
-        latest = next;
-    return (const qc_ray_caster *)latest;
-}
 
 int cli_add_strokes(cli_session *session, const qc_registry *registry, const char *path,
                     qc_polygon_mesh **mesh) {
-    rays r = {0};
+    cli_rays r = {0};
     qc_polygon_mesh *strokes = NULL, *both = NULL;
-    int status = read_file(path, &r);
+    int status = cli_read_rays(path, &r);
     if (status == EXIT_DONE &&
-        (qc_ray_strokes(session->ctx, *mesh, latest_caster(registry), r.n_strokes, r.offset, r.ray,
+        (qc_ray_strokes(session->ctx, *mesh, cli_ray_caster(registry), r.n_strokes, r.offset, r.ray,
                         0, &strokes) != QC_OK ||
          qc_polygon_mesh_merge(session->ctx, 2, (const qc_polygon_mesh *[]){*mesh, strokes}, NULL,
                                &both) != QC_OK))
@@ -84,7 +17,6 @@ int cli_add_strokes(cli_session *session, const qc_registry *registry, const cha
         *mesh = both;
     }
     qc_object_release(strokes);
-    free(r.offset);
-    free(r.ray);
+    cli_rays_free(&r);
     return status;
 }

@@ -1,4 +1,4 @@
-# Strokes from camera rays: the field follows them; files which cannot be used are named.
+# Strokes and picking by camera rays: the field follows strokes; files which cannot be used are named.
 . "$(dirname "$0")/common.sh"
 remesh="remesh in.obj --quads 600 --mode fast --progress none --set features.angle=180"
 run 0 shape sphere --resolution 2000 -o in.obj
@@ -24,6 +24,31 @@ deviation() {
 }
 between "$(deviation plain.rawfield)" 18 45 "field without strokes"
 between "$(deviation stroke.rawfield)" 0 15 "field along the stroke"
+
+# Picking: a cube from above, beside it, and from a corner.
+cat >cube.obj <<'END'
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+v 0 0 1
+v 1 0 1
+v 1 1 1
+v 0 1 1
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+END
+echo '{"strokes": [[[0.25, 0.125, 5, 0, 0, -2], [2, 2, 5, 0, 0, -1]], [[9, 9, 9, -1, -1, -1]]]}' >pick.json
+run 0 pick cube.obj --rays pick.json --progress none
+out_says '"face": 1' '"t": 2.0' '"vertex": 4' '"feature_distance": 0.125' null '"vertex": 6'
+run 2 pick cube.obj
+error_says "--rays"
+run 3 pick cube.obj --rays nothing.json
+error_says nothing.json
 
 run 3 $remesh -o no.obj --stroke-rays nothing.json
 error_says nothing.json

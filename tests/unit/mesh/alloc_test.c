@@ -1,5 +1,7 @@
 /* Every allocation of the mesh module is made to fail once: the calls report NOMEM, leave their
  * outputs alone and give all memory back. */
+#include <qc/ray.h>
+
 #include "unit/mesh/failing_allocator.h"
 #include "unit/mesh/fixtures.h"
 
@@ -11,7 +13,10 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     static const uint8_t base[] = {1, 0, 1, 0};
     qc_mesh *m = NULL, *part = NULL;
     qc_features *features = NULL;
-    qc_polygon_mesh *p = NULL, *both = NULL;
+    static const double ray[] = {0.1, 0.1, 5, 0, 0, -1, 0.3, 0.3, 5, 0, 0, -1};
+    static const int32_t stroke[] = {0, 2};
+    qc_polygon_mesh *p = NULL, *both = NULL, *strokes = NULL;
+    qc_pick pick[2];
     qc_polygon_topology topology;
     uint8_t cut[6], edge[6];
     int32_t chain[6], n_chains;
@@ -29,11 +34,15 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     if (s == QC_OK) s = qc_polygon_mesh_create(ctx, 4, 4, 12, 2, 1, 7, &p);
     for (int i = 0; s == QC_OK && i < 12; i++) p->face_vertex[i] = face[i];
     for (int i = 0; s == QC_OK && i < 5; i++) p->face_offset[i] = 3 * i;
+    if (s == QC_OK) memcpy(p->position, position, sizeof position);
+    if (s == QC_OK) s = qc_mesh_pick(ctx, m, features, NULL, NULL, 2, ray, pick);
+    if (s == QC_OK) s = qc_ray_strokes(ctx, p, NULL, 1, stroke, ray, 0.05, &strokes);
     const qc_polygon_mesh *parts[] = {p, p};
     if (s == QC_OK) s = qc_polygon_mesh_merge(ctx, 2, parts, NULL, &both);
     if (s == QC_OK) s = qc_polygon_mesh_topology(ctx, both, &topology);
     assert_true(s != QC_OK || topology.components == 2);
     qc_object_release(both);
+    qc_object_release(strokes);
     qc_object_release(p);
     qc_object_release(features);
     qc_object_release(part);
