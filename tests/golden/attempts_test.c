@@ -66,7 +66,7 @@ static void attempts_end(void **state) {
     (void)state;
     const char *seed;
     assert_int_equal(run_with_refusals(1000, &seed), QC_ERR_FAILED);
-    assert_in_range(calls, 2, 10);
+    assert_in_range(calls, 2, 13);
     assert_string_equal(seed, "7");
 }
 
