@@ -12,38 +12,37 @@ typedef struct box {
     double low[3], high[3], step;
 } box;
 
-static void enclose(box *b, const double *position, int32_t n) {
-    for (int32_t v = 0; v < n; v++)
-        for (int c = 0; c < 3; c++) {
-            b->low[c] = fmin(b->low[c], position[3 * v + c]);
-            b->high[c] = fmax(b->high[c], position[3 * v + c]);
-        }
+static void enclose(box *b, const double *position, size_t n) {
+    for (size_t i = 0; i < 3 * n; i++) {
+        b->low[i % 3] = fmin(b->low[i % 3], position[i]);
+        b->high[i % 3] = fmax(b->high[i % 3], position[i]);
+    }
 }
 
 static box bounds(const qc_remesh_result *r) {
     box b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 1};
-    if (r->mesh) enclose(&b, r->mesh->position, r->mesh->n_vertices);
-    if (r->quads) enclose(&b, r->quads->position, r->quads->n_vertices);
+    if (r->mesh) enclose(&b, r->mesh->position, (size_t)r->mesh->n_vertices);
+    if (r->quads) enclose(&b, r->quads->position, (size_t)r->quads->n_vertices);
     double longest = 0;
     for (int c = 0; c < 3; c++) longest = fmax(longest, b.high[c] - b.low[c]);
     if (longest > 0) b.step = longest / 65535;
     return b;
 }
 
-static int32_t quantise(const box *b, double x, int c) {
+static int32_t quantise(const box *b, double x, size_t c) {
     return (int32_t)lround((x - b->low[c]) / b->step);
 }
 
 static void add_positions(cli_arrays *a, const char *name, const box *b, const double *position,
                           int32_t n) {
     int32_t *q = cli_integers(3 * (size_t)n);
-    for (int32_t i = 0; q && i < 3 * n; i++) q[i] = quantise(b, position[i], i % 3);
+    for (size_t i = 0; q && i < 3 * (size_t)n; i++) q[i] = quantise(b, position[i], i % 3);
     cli_arrays_add(a, name, q, 3 * (size_t)n, 3);
 }
 
 static void add_copy(cli_arrays *a, const char *name, const int32_t *values, size_t n, int stride) {
     int32_t *copy = cli_integers(n);
-    if (copy) memcpy(copy, values, n * sizeof *copy);
+    if (copy && n > 0) memcpy(copy, values, n * sizeof *copy);
     cli_arrays_add(a, name, copy, n, stride);
 }
 
@@ -86,8 +85,9 @@ static void add_uv(cli_arrays *a, const qc_polygon_mesh *m, double scale) {
     int32_t *q = cli_integers(2 * (size_t)m->n_corners);
     for (int32_t i = 0; q && i < m->n_corners; i++) {
         const double *first = corner_uv(m, i - i % 3), *p = corner_uv(m, i);
-        for (int c = 0; c < 2; c++)
-            q[2 * i + c] = (int32_t)lround(fmax(-2e9, fmin(2e9, (p[c] - floor(first[c])) * scale)));
+        for (size_t c = 0; c < 2; c++)
+            q[2 * (size_t)i + c] =
+                (int32_t)lround(fmax(-2e9, fmin(2e9, (p[c] - floor(first[c])) * scale)));
     }
     cli_arrays_add(a, "grid_uv", q, 2 * (size_t)m->n_corners, 2);
 }
@@ -132,7 +132,7 @@ static void add_cones(cli_arrays *a, const box *b, const double *position, const
     int32_t *q = cli_integers(4 * count), *out = q;
     for (int32_t v = 0; q && v < n; v++) {
         if (index4[v] == 0) continue;
-        for (int c = 0; c < 3; c++) *out++ = quantise(b, position[3 * v + c], c);
+        for (size_t c = 0; c < 3; c++) *out++ = quantise(b, position[3 * (size_t)v + c], c);
         *out++ = index4[v];
     }
     cli_arrays_add(a, "cones", q, 4 * count, 4);

@@ -65,10 +65,13 @@ export function tracePlot(trace) {
   }
   const mostEnergy = Math.max(...energy.map((p) => p[1]));
   const mostPoints = Math.max(...points.map((p) => p[1]));
+  let free = 0;
   for (const [x, step] of starts) {
     const at = atX(x, 0, begin);
     add(svg, 'path', { d: `M${at} ${TOP}V${HEIGHT - BOTTOM}`, stroke: '#d8dee5' });
-    if (starts.length <= 6) add(svg, 'text', { x: at + 2, y: HEIGHT - BOTTOM - 3 }, step);
+    if (at < free) continue;
+    add(svg, 'text', { x: at + 2, y: HEIGHT - BOTTOM - 3 }, step);
+    free = at + 6 * (step.length + 1);
   }
   polyline(svg, energy, mostEnergy, begin, '#c33');
   polyline(svg, points, mostPoints, begin, '#2166ac');
