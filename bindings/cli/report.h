@@ -25,6 +25,32 @@ void cli_arrays_add(cli_arrays *arrays, const char *name, int32_t *values, size_
 char *cli_arrays_text(const cli_arrays *arrays);
 void cli_arrays_free(cli_arrays *arrays);
 
+/* --- the map as triangles ----------------------------------------------------------------------
+ */
+
+typedef struct cli_grid {
+    size_t n_points, n_corners; /* three corners a triangle */
+    double *position;           /* 3 n_points                */
+    int32_t *corner;            /* n_corners: point          */
+    double *uv;                 /* 2 n_corners               */
+} cli_grid;
+/* false: out of memory. To be freed in either case. */
+bool cli_grid_create(const qc_polygon_mesh *uv, cli_grid *out);
+void cli_grid_free(cli_grid *grid);
+
+/* --- singularities ---------------------------------------------------------------------------- */
+
+typedef struct cli_cone {
+    double position[3];
+    int32_t index4;
+} cli_cone;
+typedef struct cli_cones {
+    size_t n;
+    cli_cone *cone; /* owned */
+} cli_cones;
+/* false: out of memory, or the library failed. */
+bool cli_cones_create(qc_ctx *ctx, const qc_remesh_result *result, cli_cones *out);
+
 /* --- contents -------------------------------------------------------------------------------- */
 
 /* Quantises what the run made and adds it to `arrays`; the rest of the description as JSON. NULL:

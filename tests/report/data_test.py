@@ -9,6 +9,8 @@ import tempfile
 
 from page import read, run
 
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+
 
 def read_obj(path):
     points, faces = [], []
@@ -97,6 +99,21 @@ def curves_of_figure_6_1(program, name):
             assert all(a[1] >= b[1] for a, b in zip(energy, energy[1:]))
 
 
+def poles_of_height(program):
+    """Two poles and two saddles of the graph of sin u cos v (second paper, Figure 10)."""
+    pipeline = os.path.join(ROOT, "docs/pipelines/height-function.json")
+    run(program, "shape", "sin-u-cos-v", "--resolution", "3000", "-o", "graph.obj")
+    run(program, "remesh", "graph.obj", "--pipeline", pipeline, "--set", "size.quads=1000", "--report", "graph.html")
+    report, arrays = read("graph.html")
+    index = arrays["cones"][3::4]
+    assert sorted(index) == [-4, -4, 4, 4], index
+    assert report["stats"]["field"]["index4"] == {"-4": 2, "-1": 0, "1": 0, "4": 2}
+    # Cells of the quads at the poles, in which the map is bilinear, are triangles here.
+    assert len(arrays["grid_faces"]) > len(arrays["input_faces"]) and len(arrays["grid_faces"]) % 3 == 0
+    assert len(arrays["grid_uv"]) == 2 * len(arrays["grid_faces"])
+    assert 3 * max(arrays["grid_faces"]) < len(arrays["grid_positions"])
+
+
 def no_address(path):
     with open(path, encoding="utf-8") as file:
         text = file.read()
@@ -131,6 +148,7 @@ def main(program):
         no_address("page.html")
         assert report["trace"] == []
         curves_of_figure_6_1(program, name)
+        poles_of_height(program)
         run(program, "remesh", name, "--quads", "500", "--mode", "fast", "--report", "again.html",
             "--threads", "2")
         assert read("again.html")[1] == arrays, "depends on the number of threads"

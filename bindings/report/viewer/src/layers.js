@@ -141,7 +141,7 @@ export function segments(position, pairs, colour) {
 }
 
 // Valence 3 is red, 5 blue, as in the thesis.
-export const indexColours = { 1: '#d7301f', '-1': '#2166ac', 2: '#f28e2b', '-2': '#6a3d9a', 3: '#e7298a', '-3': '#1b9e77' };
+export const indexColours = { 1: '#d7301f', '-1': '#2166ac', 2: '#f28e2b', '-2': '#6a3d9a', 3: '#e7298a', '-3': '#1b9e77', 4: '#b8860b', '-4': '#00838f' };
 export const otherColour = '#444444';
 
 // points: x, y, z, index4 in turn.

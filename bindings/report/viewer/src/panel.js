@@ -21,8 +21,10 @@ function section(title, ...children) {
 
 function figures(stats) {
   const { input, quads, energy, uv, field } = stats;
+  const given = ['Input', `${count(input.faces)} faces, genus ${input.genus}, ${input.boundaries} boundary loops`];
+  if (quads.faces === 0) return table([given]);
   const rows = [
-    ['Input', `${count(input.faces)} faces, genus ${input.genus}, ${input.boundaries} boundary loops`],
+    given,
     ['Quads', count(quads.faces)],
     ['Vertices', count(quads.vertices)],
     ['Irregular vertices', count(quads.irregular)],

@@ -46,8 +46,8 @@ function legend(points) {
   return [...counts].sort((a, b) => b[0] - a[0]).map(([index, n]) => {
     const dot = make('i');
     dot.style.background = indexColours[index] ?? otherColour;
-    const sign = index > 0 ? '+' : '−';
-    return make('div', {}, dot, `index ${sign}${Math.abs(index)}/4: ${n}`);
+    const size = Math.abs(index);
+    return make('div', {}, dot, `index ${index > 0 ? '+' : '−'}${size % 4 ? `${size}/4` : size / 4}: ${n}`);
   });
 }
 
