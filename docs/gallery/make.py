@@ -22,7 +22,7 @@ HEAD = """# Gallery
 
 The figures of the three papers ([references](../theory/references.md)) made again: `make gallery` runs the commands below and writes the
 reports, with `reports/index.html` as a page for all of them. Models which are not among the test data are replaced by others, as said
-there. This page is made by `make.py` from `figures.json`.
+there, or left out (the hand of Figures 9 and 10 of the 2007 paper); so are drawings which explain a notion. This page is made by `make.py` from `figures.json`.
 """
 
 
