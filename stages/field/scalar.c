@@ -4,9 +4,12 @@
 #include <qc/field.h>
 #include <qc/stages.h>
 
+#include <stdio.h>
+
 typedef struct params {
     int32_t direction;
     const char *file;
+    double persistence;
 } params;
 
 /* Numbers separated by white space. */
@@ -58,14 +61,25 @@ static qc_status compute(const qc_run *run, const params *p, const qc_mesh *mesh
     return QC_OK;
 }
 
+static qc_status simplify(const qc_run *run, double persistence, const qc_mesh *mesh, double *g) {
+    int32_t removed = 0;
+    char text[64];
+    const qc_status status = qc_scalar_simplify(run->ctx, mesh, persistence, g, &removed);
+    snprintf(text, sizeof text, "%d low extrema removed", (int)removed);
+    if (!status && removed > 0) run->log(run, QC_LOG_INFO, text);
+    return status;
+}
+
 static qc_status scalar(const qc_run *run, const void *p) {
+    const params *o = p;
     const qc_mesh *mesh = run->input(run, "mesh");
     const size_t F = (size_t)mesh->n_faces;
     double *g = QC__NEW(run->ctx, double, mesh->n_vertices), *weight = QC__NEW(run->ctx, double, F);
     qc_complex *x = QC__NEW(run->ctx, qc_complex, F);
     uint8_t *trusted = QC__ZERO(run->ctx, uint8_t, F);
     qc_face_field *out = NULL;
-    qc_status status = g && weight && x && trusted ? compute(run, p, mesh, g) : QC_ERR_NOMEM;
+    qc_status status = g && weight && x && trusted ? compute(run, o, mesh, g) : QC_ERR_NOMEM;
+    if (!status) status = simplify(run, o->persistence, mesh, g);
     if (!status) status = qc_field_gradient(run->ctx, mesh, g, x, weight, trusted);
     if (!status) status = qc_face_field_create(run->ctx, mesh, x, weight, trusted, &out);
     if (!status) out->is_vector = 1;
@@ -88,6 +102,9 @@ static const qc_param table[] = {
         params, file,
         "file with one value for each vertex of the input, taken instead of a coordinate; "
         "- = stdin"),
+    QC_PARAM_REAL(params, persistence, 0.01, 0.0, 0.99, NULL,
+                  "extrema which rise above the saddle beside them by less than this part of the "
+                  "range of the function are removed"),
 };
 
 const qc_stage qc_stage_field_scalar = {
@@ -106,7 +123,7 @@ const qc_stage qc_stage_field_scalar = {
     1,
     1,
     table,
-    2,
+    3,
     sizeof(params),
     scalar,
 };

@@ -77,6 +77,28 @@ static void every_density(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* The 3-fold Lawson surface of Figure 10. Its inner points of the axis are maxima beside three
+ * saddles each, lower by 1e-4 of the height and nearer than a quad: simplified to two vertices of
+ * index -2.
+ */
+static void lawson(void **state) {
+    const double quads[] = {300, 1000, 3000, 10000};
+    (void)state;
+    qc_ctx *ctx = golden_context(2);
+    qc_polygon_mesh *soup = shape(ctx, "lawson", 10000, 1);
+    for (int k = 0; k < 4; k++) {
+        qc_remesh_result r = {0};
+        remesh(ctx, "lawson", soup, quads[k], &r);
+        golden_equal("lawson", "poles", r.report->field.index4[8 + 4], 2);
+        golden_equal("lawson", "monkey saddles", r.report->field.index4[8 - 8], 2);
+        golden_equal("lawson", "singularities", r.report->field.singularities, 4);
+        golden_equal("lawson", "Euler characteristic", r.report->quads.euler, -2);
+        qc_remesh_result_clear(&r);
+    }
+    qc_object_release(soup);
+    qc_ctx_free(ctx);
+}
+
 /* On the sphere all lines but the closing vertices are regular: 2 poles of k quads and 2 k vertices
  * of valence 3. */
 static void closing_pattern(void **state) {
@@ -201,6 +223,7 @@ static void scale_and_threads_change_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_density),
+        cmocka_unit_test(lawson),
         cmocka_unit_test(closing_pattern),
         cmocka_unit_test(uv_is_continuous),
         cmocka_unit_test(uv_meshes_are_extracted),

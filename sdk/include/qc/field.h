@@ -78,6 +78,13 @@ enum { QC_CURVATURE_HILDEBRANDT_POLTHIER = 0, QC_CURVATURE_COHEN_STEINER_MORVAN 
  * more than 200 faces. */
 QC_API qc_status qc_field_curvature(qc_ctx *ctx, const qc_mesh *mesh, int32_t estimator,
                                     double radius, qc_complex *x, double *kappa);
+/* Changes the function g (n_vertices) on its low hills and hollows, where the way from the extremum
+ * to the saddle beside it is less than `persistence` (0..1) times the range of g: they are filled
+ * by a function with the mean value property and lose their extremum. *removed (may be NULL) counts
+ * them; what stays is a warning. Elsewhere g keeps its values. Errors: ARGUMENT (where = vertex: g
+ * is not finite; persistence), NOMEM, CANCELLED. */
+QC_API qc_status qc_scalar_simplify(qc_ctx *ctx, const qc_mesh *mesh, double persistence, double *g,
+                                    int32_t *removed);
 /* The gradient of the piecewise linear function g (n_vertices): x = grad g / |grad g|, weight =
  * |grad g| over its maximum (each n_faces). Where it is below 1e-6 the weight is 0, trusted
  * (n_faces) too, and x is transported from the faces around. ARGUMENT with where = vertex when g is
