@@ -1,0 +1,59 @@
+/* Rounding the periods of a seamless map: what its parts share. Internal to round*.c; the parts are
+ * the alignment of features (round_align.c), one trial (round_trial.c), the search for the number
+ * of quads (round_density.c) and the map that comes out (round_publish.c). */
+#ifndef QC_MAP_ROUND_H
+#define QC_MAP_ROUND_H
+
+#include "sdk/map/periods/period_matrix.h"
+#include "sdk/map/periods/separation.h"
+
+static const double qc__round_slack = 1e-9; /* deviations nearer than that are equal */
+/* Deviation of the number of quads which is good enough. */
+static const double qc__round_promised = 0.05;
+
+typedef struct qc__rounding {
+    qc_ctx *ctx;
+    const qc_seamless_map *seamless;
+    const qc_mesh *mesh;
+    qc_round_options options;
+    double *weight;    /* n_faces: of the seamless map, raised where features fold it; NULL = 1 */
+    double *cotangent; /* times the weights of the faces */
+    qc__seams *seams;
+    qc__periods *periods;
+    qc__separation *separation;
+    double *P;                               /* n^2, NULL = direct rounding only */
+    double *period;                          /* n: real-valued periods in lattice units */
+    double *gap;                             /* n: rounded minus scaled periods */
+    double *target, *rounded, *best_rounded; /* n */
+    qc_complex *z;  /* 3 n_faces: the frame field in combed charts, where there are features */
+    double *symbol; /* n_symbols */
+    double _Complex *wedge;          /* n_wedges */
+    double _Complex *F, *correction; /* n_vertices: unknown coordinates of f, and what is added */
+    qc_complex *f; /* 3 n_faces: the shifted, aligned seamless map                                */
+    qc_complex *trial, *best; /* 3 n_faces */
+    double curl_energy;       /* of f, before scaling */
+    double best_scale, best_miss, harmonic, harmonic_direct;
+    int64_t moves, evaluations;
+    bool coarse;             /* this trial only tells the number of quads */
+    int32_t collisions;      /* pairs which could not be kept apart in the last trial ... */
+    int32_t best_collisions; /* ... and in the best map                                           */
+    int32_t wrong, best_wrong; /* cones which wind wrong */
+} qc__rounding;
+
+/* Signed area of the image: unit cells covered. */
+double qc__round_area(const qc_complex *f, int32_t n_faces);
+/* Dirichlet energy of corner values f in the norm without stiffening. */
+double qc__round_energy(const qc__rounding *r, const qc_complex *f);
+/* Puts the features of the seamless map on isolines, with real levels; stiffens while that makes it
+ * fold over. Then finds what has to stay apart. Needs P. */
+qc_status qc__round_align(qc__rounding *r);
+/* With the integers chosen, stiffens the best map where its features let it fold over. */
+qc_status qc__round_unfold(qc__rounding *r);
+/* The rounded map at a scale and its number of quads; unless coarse, keeps it when it beats the
+ * best one. */
+qc_status qc__round_try(qc__rounding *r, double scale, double wanted, double *quads);
+/* The best map whose number of quads meets what is asked for. */
+qc_status qc__round_meet(qc__rounding *r);
+qc_status qc__round_publish(qc__rounding *r, qc_corner_map **out);
+
+#endif

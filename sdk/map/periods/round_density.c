@@ -1,0 +1,76 @@
+/* Meeting a number of quads: the map is scaled and rounded again until its area meets it. Periods
+ * scale with the map, the period matrix does not change (docs/theory/rounding.md, R.8 and R.9). */
+#include "sdk/map/periods/round.h"
+#include <math.h>
+
+enum {
+    REFINEMENTS = 6,
+    DENSITY_ROUNDS = 24,
+    NEWTON_ROUNDS = 5,  /* of these; then scales about the best are scanned */
+    WINDING_ROUNDS = 13 /* in so many, cones which wind wrong are a reason to go on */
+};
+
+static double scale_factor(double wanted, double quads) {
+    const double factor = quads > 0 ? sqrt(wanted / quads) : 1.5;
+    return factor < 0.5 ? 0.5 : factor > 2.0 ? 2.0 : factor;
+}
+
+static qc_status meet_density(qc__rounding *r) {
+    const double wanted = r->options.refine * r->seamless->sizing->target_quads;
+    double scale = sqrt(r->options.refine), middle = scale, quads = 0;
+    if (wanted > 0 && r->P) {
+        r->coarse = true;
+        const qc_status status = qc__round_try(r, scale, wanted, &quads);
+        if (status != QC_OK) return status;
+        r->coarse = false;
+        scale *= scale_factor(wanted, quads);
+    }
+    for (int32_t i = 0; i < DENSITY_ROUNDS; i++) {
+        if (!qc__progress(r->ctx, 0.7 + 0.3 * i / DENSITY_ROUNDS)) return QC_ERR_CANCELLED;
+        const qc_status status = qc__round_try(r, scale, wanted, &quads);
+        if (status != QC_OK) return status;
+        if (!(wanted > 0)) break;
+        if (qc__out_of_time(r->ctx) && r->best_miss <= qc__round_promised + qc__round_slack) break;
+        const bool sound =
+            r->best_collisions == 0 && (r->best_wrong == 0 || i + 1 >= WINDING_ROUNDS);
+        if (r->best_miss <= r->options.tolerance + qc__round_slack && sound) break;
+        if (i < NEWTON_ROUNDS - 1) {
+            scale *= scale_factor(wanted, quads);
+        } else { /* a map with few periods jumps: 1, -1, 2, -2, ... percent about the middle */
+            if (i == NEWTON_ROUNDS - 1) middle = r->best_scale;
+            const int32_t k = i - NEWTON_ROUNDS + 1;
+            scale = middle * (1.0 + 0.01 * (k / 2 + 1) * (k % 2 ? -1 : 1));
+            if (r->best_miss <= qc__round_promised && sound) break;
+        }
+    }
+    return QC_OK;
+}
+
+/* Where the quads asked for are too large for the distances between singularities and features, no
+ * integers keep these apart: then smaller ones are taken, in steps of sqrt(2), up to 8 times as
+ * many.
+ */
+qc_status qc__round_meet(qc__rounding *r) {
+    const double asked = r->options.refine;
+    qc_status status = meet_density(r);
+    const int32_t pairs = r->best_collisions;
+    if (r->options.trial) return status;
+    for (int32_t k = 1; k <= REFINEMENTS && status == QC_OK && r->best_collisions > 0; k++) {
+        r->options.refine = asked * pow(2, 0.5 * k);
+        r->best_scale = 0;
+        status = meet_density(r);
+    }
+    if (status != QC_OK || pairs == 0) return status;
+    if (r->best_collisions > 0) {
+        r->options.refine = asked;
+        r->best_scale = 0;
+        qc__log(r->ctx, QC_LOG_WARNING,
+                "%d pairs of singularities or features are too close for this density", (int)pairs);
+        return meet_density(r);
+    }
+    qc__log(r->ctx, QC_LOG_WARNING,
+            "%d pairs of singularities or features are too close for this density; %.2g times as "
+            "many quads are made",
+            (int)pairs, r->options.refine / asked);
+    return QC_OK;
+}
