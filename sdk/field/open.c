@@ -69,6 +69,11 @@ static qc_status find_poles(opener *o, const qc_sizing *sizing, int32_t *n_poles
     *n_poles = 0;
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         if (!is_pole(o->matching, v)) continue;
+        if (o->matching->index4[v] > 4)
+            return qc__fail(o->ctx, QC_ERR_FAILED, v,
+                            "vertex %d has index %d: like 1/z the map would have no end of quads "
+                            "around it; give the field vertices of index 1 or less there",
+                            (int)v, (int)o->matching->index4[v] / 4);
         choose_rings(o, sizing, v);
         (*n_poles)++;
     }

@@ -216,7 +216,7 @@ QC_API qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching,
  * surface. Old vertices keep their numbers, a pole that of its first tip. source_face as of the old
  * mesh; source_vertex of tips is that of the pole, of ring vertices -1. No pole: the same objects,
  * retained. Errors: ARGUMENT (sizing of another mesh; where = vertex: two poles are neighbours, run
- * qc_matching_split before), NOMEM, CANCELLED. */
+ * qc_matching_split before), FAILED (where = vertex: of index 2 or more), NOMEM, CANCELLED. */
 QC_API qc_status qc_matching_open(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
                                   qc_mesh **mesh, qc_sizing **sizing_out,
                                   qc_matching **matching_out);

@@ -82,6 +82,33 @@ static double half_distance2(const hodge *q, const qc_complex *a, const qc_compl
     return sum;
 }
 
+/* Weights in proportion to the distance from the poles (N.5): towards a pole unit crosses are
+ * farther and farther from integrable. Relative to the least one, so that none is below 1. */
+static qc_status weigh(hodge *q) {
+    const qc_mesh *mesh = q->mesh;
+    for (int32_t t = 0; t < mesh->n_faces; t++) q->weight[t] = 1;
+    if (mesh->n_poles == 0) return QC_OK;
+    uint8_t *tip = QC__ZERO(q->ctx, uint8_t, mesh->n_vertices);
+    double *r = QC__NEW(q->ctx, double, mesh->n_vertices), least = INFINITY;
+    qc_status status = tip && r ? QC_OK : QC_ERR_NOMEM;
+    for (int32_t i = 0; !status && i < mesh->pole_start[mesh->n_poles]; i++)
+        tip[mesh->face_vertex[mesh->pole_corner[i]]] = 1;
+    if (!status) status = qc_mesh_shortest_paths(q->ctx, mesh, NULL, tip, r, NULL);
+    double far = 0;
+    for (int32_t v = 0; !status && v < mesh->n_vertices; v++)
+        if (isfinite(r[v])) far = fmax(far, r[v]);
+    for (int32_t t = 0; !status && t < mesh->n_faces; t++) {
+        const int32_t *v = mesh->face_vertex + 3 * (int64_t)t;
+        const double mean = (r[v[0]] + r[v[1]] + r[v[2]]) / 3;
+        q->weight[t] = fmin(fmax(mean / far, 1e-3), 1);
+        least = fmin(least, q->weight[t]);
+    }
+    for (int32_t t = 0; !status && t < mesh->n_faces; t++) q->weight[t] /= least;
+    qc__free(tip);
+    qc__free(r);
+    return status;
+}
+
 static qc_status solve(hodge *q, const qc_matching *matching, const qc_sizing *sizing,
                        int32_t rounds) {
     qc_status status =
@@ -90,7 +117,7 @@ static qc_status solve(hodge *q, const qc_matching *matching, const qc_sizing *s
     if (status == QC_OK) status = cut_at_cones(q->ctx, matching, &q->cover, q->cut);
     if (status == QC_OK)
         status = qc_cover_comb(q->ctx, &q->cover, q->cut, q->face_turn, NULL, NULL);
-    for (int32_t t = 0; t < q->mesh->n_faces; t++) q->weight[t] = 1;
+    if (status == QC_OK) status = weigh(q);
     for (int32_t i = 0; i <= rounds && status == QC_OK; i++) {
         if (i > 0) {
             if (qc__wrong_cones(q->mesh, q->index4, q->f) == 0) break;

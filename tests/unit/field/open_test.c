@@ -170,12 +170,47 @@ static void neighbours_are_refused(void **state) {
     free(g);
 }
 
+/* The constant field of the plane on the sphere, by stereographic projection, has index 2. */
+static void dipoles_are_refused(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *old = ellipsoid(ctx, 16, 12, 1, 1, 1), *mesh = NULL;
+    const size_t n = (size_t)old->n_faces;
+    double *re = malloc(sizeof *re * 6 * n), *im = re + 3 * n;
+    qc_complex *x = malloc(sizeof *x * n);
+    qc_face_field *field = NULL;
+    qc_matching *m = NULL, *out = NULL;
+    qc_sizing *sizing = sizing_of(ctx, old, 0.1), *s = NULL;
+    assert_int_equal(qc_tangent_frames(ctx, old, re, im), QC_OK);
+    for (size_t t = 0; t < n; t++) {
+        double c[3] = {0, 0, 0};
+        for (int i = 0; i < 9; i++)
+            c[i % 3] += old->position[3 * old->face_vertex[3 * t + (size_t)i / 3] + i % 3];
+        const double r = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+        const double a = c[0] / (r - c[2]), b = c[1] / (r - c[2]);
+        const double d[3] = {1 - a * a + b * b, -2 * a * b, 2 * a};
+        const double *e = re + 3 * t, *f = im + 3 * t;
+        x[t] = (qc_complex){d[0] * e[0] + d[1] * e[1] + d[2] * e[2],
+                            d[0] * f[0] + d[1] * f[1] + d[2] * f[2]};
+    }
+    assert_int_equal(qc_face_field_create(ctx, old, x, NULL, NULL, &field), QC_OK);
+    field->is_vector = 1;
+    assert_int_equal(qc_matching_create(ctx, field, NULL, &m), QC_OK);
+    assert_int_equal(m->n_singular, 1);
+    assert_int_equal(m->index4[old->n_vertices - 1], 8);
+    assert_int_equal(qc_matching_open(ctx, m, sizing, &mesh, &s, &out), QC_ERR_FAILED);
+    assert_int_equal(qc_ctx_error(ctx)->where, old->n_vertices - 1);
+    assert_null(mesh);
+    const void *made[] = {m, field, sizing, old};
+    for (size_t k = 0; k < sizeof made / sizeof *made; k++) qc_object_release(made[k]);
+    free(re);
+    free(x);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(extrema_have_index_one),
-        cmocka_unit_test(linear_functions),
-        cmocka_unit_test(opening_keeps_the_field),
-        cmocka_unit_test(neighbours_are_refused),
+        cmocka_unit_test(extrema_have_index_one),  cmocka_unit_test(linear_functions),
+        cmocka_unit_test(opening_keeps_the_field), cmocka_unit_test(neighbours_are_refused),
+        cmocka_unit_test(dipoles_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
