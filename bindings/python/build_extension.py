@@ -15,8 +15,8 @@ include = pathlib.Path(os.environ.get("QUADCOVER_INCLUDE", checkout / "sdk" / "i
 
 
 def declarations():
-    """cdef.h without its comments, which cffi does not need."""
-    return (here / "quadcover" / "cdef.h").read_text()
+    """declarations.cdef without its comments, which cffi does not need."""
+    return (here / "quadcover" / "declarations.cdef").read_text()
 
 
 ffi = cffi.FFI()
