@@ -61,7 +61,7 @@ static const qc_port inputs[] = {
 };
 static const qc_port outputs[] = {{"field", QC_TYPE_FACE_FIELD, 0, "the smoothed field"}};
 static const qc_param table[] = {
-    QC_PARAM_REAL(params, lambda, 0.5, 0, 1, "",
+    QC_PARAM_REAL(params, lambda, 0.9, 0, 1, "",
                   "0 keeps the trusted directions, 1 ignores them and only smooths"),
     QC_PARAM_REAL(
         params, detail, 0.5, 0, 100, "quad",

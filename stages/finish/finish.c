@@ -57,7 +57,7 @@ static const qc_param table[] = {
     QC_PARAM_REAL(params, quality, 0.6, -1, 1, "",
                   "scaled Jacobian below which no quad may fall, unless it is lower already; worse "
                   "quads are improved"),
-    QC_PARAM_REAL(params, uniformity, 0.5, 0, 1, "",
+    QC_PARAM_REAL(params, uniformity, 1, 0, 1, "",
                   "0 = squares as large as their quad, 1 = as large as the quads around it"),
     QC_PARAM_INTERFACE(params, closest, closest_points,
                        "finds closest points; builtin unless a plugin or the program offers "

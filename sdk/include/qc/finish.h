@@ -21,7 +21,7 @@ typedef struct qc_relax_options {
     const qc_closest_point *closest; /* borrowed; NULL = builtin */
 } qc_relax_options;
 #define QC_RELAX_OPTIONS_INIT                                                                      \
-    { sizeof(qc_relax_options), 10, 0.6, 0.5, NULL, NULL }
+    { sizeof(qc_relax_options), 10, 0.6, 1.0, NULL, NULL }
 
 /* Moves the vertices of quads towards squares and keeps them on the surface: inner vertices are
  * projected to the closest point, those on the boundary and on features slide along their curve,
