@@ -6,8 +6,11 @@
 enum {
     REFINEMENTS = 6,
     DENSITY_ROUNDS = 24,
-    NEWTON_ROUNDS = 5,  /* of these; then scales about the best are scanned */
-    WINDING_ROUNDS = 13 /* in so many, cones which wind wrong are a reason to go on */
+    NEWTON_ROUNDS = 5,   /* of these; then scales about the best are scanned */
+    WINDING_ROUNDS = 13, /* in so many, cones which wind wrong are a reason to go on, ... */
+    FEW_COLLISIONS = 3,  /* ... and pairs which collide where they are no more than these */
+    WRONG_CONES = 20,    /* so many, or ... */
+    WRONG_SHARE = 3      /* ... one in so many, can be unwound */
 };
 
 static double scale_factor(double wanted, double quads) {
@@ -41,36 +44,41 @@ static qc_status meet_density(qc__rounding *r) {
             const int32_t k = i - NEWTON_ROUNDS + 1;
             scale = middle * (1.0 + 0.01 * (k / 2 + 1) * (k % 2 ? -1 : 1));
             if (r->best_miss <= qc__round_promised && sound) break;
+            if (i + 1 >= WINDING_ROUNDS && r->best_collisions > FEW_COLLISIONS) break;
         }
     }
     return QC_OK;
 }
 
+/* Whether this map is not worth untangling, which parts no points and unwinds few cones. */
+static bool is_hopeless(const qc__rounding *r) {
+    const int32_t share = r->seams->n_cones / WRONG_SHARE;
+    return r->best_collisions > 0 || r->best_wrong > (share > WRONG_CONES ? share : WRONG_CONES);
+}
+
+static qc_status meet_refined(qc__rounding *r, double refine) {
+    r->options.refine = refine;
+    r->best_scale = 0;
+    return meet_density(r);
+}
+
 /* Where the quads asked for are too large for the distances between singularities and features, no
- * integers keep these apart: then smaller ones are taken, in steps of sqrt(2), up to 8 times as
- * many.
- */
+ * integers keep these apart or let the cones wind right: then smaller ones are taken, in steps of
+ * sqrt(2), up to 8 times as many. */
 qc_status qc__round_meet(qc__rounding *r) {
     const double asked = r->options.refine;
     qc_status status = meet_density(r);
-    const int32_t pairs = r->best_collisions;
-    if (r->options.trial) return status;
-    for (int32_t k = 1; k <= REFINEMENTS && status == QC_OK && r->best_collisions > 0; k++) {
-        r->options.refine = asked * pow(2, 0.5 * k);
-        r->best_scale = 0;
-        status = meet_density(r);
-    }
-    if (status != QC_OK || pairs == 0) return status;
-    if (r->best_collisions > 0) {
-        r->options.refine = asked;
-        r->best_scale = 0;
+    const int32_t pairs = r->best_collisions, wrong = r->best_wrong;
+    if (status != QC_OK || r->options.trial || !is_hopeless(r)) return status;
+    for (int32_t k = 1; k <= REFINEMENTS && status == QC_OK && is_hopeless(r); k++)
+        status = meet_refined(r, asked * pow(2, 0.5 * k));
+    if (status != QC_OK) return status;
+    const bool helped = !is_hopeless(r) || r->best_collisions < pairs || 2 * r->best_wrong < wrong;
+    if (!helped) status = meet_refined(r, asked);
+    if (status == QC_OK)
         qc__log(r->ctx, QC_LOG_WARNING,
-                "%d pairs of singularities or features are too close for this density", (int)pairs);
-        return meet_density(r);
-    }
-    qc__log(r->ctx, QC_LOG_WARNING,
-            "%d pairs of singularities or features are too close for this density; %.2g times as "
-            "many quads are made",
-            (int)pairs, r->options.refine / asked);
-    return QC_OK;
+                "%d pairs of singularities or features are too close for this density, where %d "
+                "cones wind wrong; %.2g times as many quads are made",
+                (int)pairs, (int)wrong, r->options.refine / asked);
+    return status;
 }
