@@ -2,15 +2,16 @@
  * integers, exactly; energies add up; scale and threads change nothing. */
 #include "sdk/map/periods/align.h"
 #include "tests/unit/map/hard_features.h"
+#include "tests/unit/mesh/failing_allocator.h"
 
 /* Free variables: the levels of the chains less the shift; with a hole the translation once around
  * it, on the torus those of both loops, of which the feature makes one part zero. */
 static const aligned_case CASES[] = {
-    {"plate", NULL, 9, false, false, 4, 4, 2},
-    {"ring", NULL, 12, true, false, 8, 8, 8},
-    {"cube", "cube", 600, false, false, 8, 12, -1},
-    {"hyperboloid", "hyperboloid", 600, false, true, 0, 2, 2},
-    {"torus", "torus", 600, false, true, 0, 1, 3},
+    {"plate", NULL, 9, false, false, 4, 4, 2, 1},
+    {"ring", NULL, 12, true, false, 8, 8, 8, 1},
+    {"cube", "cube", 600, false, false, 8, 12, -1, 1},
+    {"hyperboloid", "hyperboloid", 600, false, true, 0, 2, 2, 1},
+    {"torus", "torus", 600, false, true, 0, 1, 3, 1},
 };
 enum { N_CASES = (int)(sizeof CASES / sizeof *CASES) };
 
@@ -202,11 +203,61 @@ static void test_threads(void **state) {
     }
 }
 
+/* A mesh a million times as large or small gets the same integers and, nearly, the same map. */
+static void scale_changes_nothing(void **state) {
+    (void)state;
+    static const double scales[] = {1, 1e6, 1e-6};
+    qc_ctx *ctx = context(1);
+    for (int i = 0; i < N_CASES; i++) {
+        double *first = NULL;
+        if (CASES[i].shape && strcmp(CASES[i].shape, "torus") == 0)
+            continue; /* feature by radius */
+        for (int k = 0; k < 3; k++) {
+            aligned_case c = CASES[i];
+            c.scale = scales[k];
+            setting *s = aligned_setting(ctx, &c, 400);
+            qc_corner_map *map = rounded(s);
+            const int64_t n = 6 * (int64_t)s->mesh->n_faces;
+            if (k == 0) first = ARRAY(double, n);
+            if (k == 0) memcpy(first, map->uv, (size_t)n * sizeof *first);
+            for (int64_t j = 0; j < n; j++)
+                if (fabs(map->uv[j] - first[j]) > 1e-6)
+                    fail_msg("%s times %g: %g, not %g", c.name, scales[k], map->uv[j], first[j]);
+            qc_object_release(map);
+            setting_free(s);
+        }
+        free(first);
+    }
+    qc_ctx_free(ctx);
+}
+
+static qc_status round_once(qc_ctx *ctx, const void *data) {
+    qc_corner_map *map = NULL;
+    const qc_status status = qc_map_round(ctx, data, NULL, &map);
+    assert_int_equal(status == QC_OK, map != NULL);
+    qc_object_release(map);
+    return status;
+}
+static void failing_allocations_leave_nothing(void **state) {
+    (void)state;
+    qc_ctx *ctx = context(1);
+    const aligned_case c = {"small ring", NULL, 3, true, false, 8, 8, 8, 1};
+    setting *s = aligned_setting(ctx, &c, 12);
+    fail_every_allocation(round_once, s->map);
+    setting_free(s);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_count),    cmocka_unit_test(test_integers),
-        cmocka_unit_test(test_rounding), cmocka_unit_test(test_energies),
-        cmocka_unit_test(test_threads),  cmocka_unit_test(features_stay_apart),
+        cmocka_unit_test(test_count),
+        cmocka_unit_test(test_integers),
+        cmocka_unit_test(test_rounding),
+        cmocka_unit_test(test_energies),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(features_stay_apart),
+        cmocka_unit_test(scale_changes_nothing),
+        cmocka_unit_test(failing_allocations_leave_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,7 @@ typedef struct aligned_case {
     bool hole, circles;     /* crosses along the circles about the z axis, else along the axes */
     int32_t points, levels; /* corners and cones; chains, up to those which points join */
     int32_t n_free;
+    double scale; /* of the positions */
 } aligned_case;
 
 /* A plate of n x n squares, each cut in two, without a middle third where `hole`. */
@@ -40,6 +41,17 @@ static inline qc_mesh *plate(qc_ctx *ctx, int32_t n, bool hole) {
     free(face);
     free(name);
     return mesh;
+}
+
+/* The same mesh, larger. */
+static inline qc_mesh *scaled(qc_ctx *ctx, qc_mesh *mesh, double scale) {
+    double *p = ARRAY(double, 3 * (int64_t)mesh->n_vertices);
+    qc_mesh *larger = NULL;
+    for (int64_t i = 0; i < 3 * (int64_t)mesh->n_vertices; i++) p[i] = scale * mesh->position[i];
+    must(ctx, qc_mesh_create(ctx, mesh->n_vertices, p, mesh->n_faces, mesh->face_vertex, &larger));
+    free(p);
+    qc_object_release(mesh);
+    return larger;
 }
 
 /* The boundary, edges between faces at right angles, and on the torus the outer circle. */
@@ -79,6 +91,7 @@ static inline void along_axes(qc_ctx *ctx, const qc_mesh *mesh, qc_complex *x) {
 static inline setting *aligned_setting(qc_ctx *ctx, const aligned_case *c, double quads) {
     const surface_case surface = {c->shape, c->resolution, 0, 0, SMOOTH};
     qc_mesh *mesh = c->shape ? case_mesh(ctx, &surface) : plate(ctx, c->resolution, c->hole);
+    if (c->scale != 1) mesh = scaled(ctx, mesh, c->scale);
     uint8_t *edge = feature_edges(ctx, c, mesh);
     qc_complex *x = ARRAY(qc_complex, mesh->n_faces);
     double *weight = ARRAY(double, mesh->n_faces);

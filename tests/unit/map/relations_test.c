@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "sdk/map/periods/relations.h"
+#include "tests/unit/mesh/failing_allocator.h"
 
 enum { SYMBOLS = 9, RELATIONS = 4, BOX = 3 };
 
@@ -154,12 +155,53 @@ static void large_coefficients_are_refused(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* Two chains which come back with the opposite sign, 2 L + s - t = 0, so that the level is given by
+ * half a difference: integers all the same, and every solution is reached. */
+static void doubled_levels_are_solved(void **state) {
+    (void)state;
+    qc_ctx *ctx = context();
+    uint64_t random = 3;
+    problem s = {.n = 2, .n_symbols = 5, .value = {{2, 1, -1, 0, 0}, {2, 0, 0, 4, 2}}};
+    solve(ctx, &s);
+    assert_int_equal(s.n_free, 3);
+    check_forwards(&s, &random);
+    assert_int_equal(check_box(&s), 87); /* sum over L of (7 - 2 |L|) times 3 or 4 */
+    clear(&s);
+    qc_ctx_free(ctx);
+}
+
+static qc_status solve_once(qc_ctx *ctx, const void *data) {
+    const problem *s = data;
+    qc__relations *r = NULL;
+    qc__rows symbol, back;
+    int32_t n_free = 0, name[SYMBOLS];
+    for (int32_t j = 0; j < SYMBOLS; j++) name[j] = j;
+    qc_status status = qc__relations_create(ctx, s->n_symbols, &r);
+    if (status != QC_OK) return status;
+    for (int32_t i = 0; i < s->n && status == QC_OK; i++)
+        status = qc__relations_add(ctx, r, s->n_symbols, name, s->value[i], i, NULL);
+    if (status == QC_OK) status = qc__relations_solve(ctx, r, &n_free, &symbol, &back);
+    qc__relations_free(r);
+    if (status != QC_OK) return status;
+    qc__rows_free(&symbol);
+    qc__rows_free(&back);
+    return QC_OK;
+}
+static void failing_allocations_leave_nothing(void **state) {
+    (void)state;
+    const problem s = {
+        .n = 3, .n_symbols = 5, .value = {{6, 10, 15, 4, 9}, {2, 1, -1, 0, 0}, {7, 0, 5, 3, 11}}};
+    fail_every_allocation(solve_once, &s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_relations_are_solved),
         cmocka_unit_test(relations_without_unit_are_solved),
         cmocka_unit_test(contradictions_leave_zero),
         cmocka_unit_test(large_coefficients_are_refused),
+        cmocka_unit_test(doubled_levels_are_solved),
+        cmocka_unit_test(failing_allocations_leave_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
