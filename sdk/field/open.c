@@ -17,6 +17,7 @@ typedef struct opener {
     int32_t *ring_vertex; /* n_edges: first vertex on the edge of a star, counted inwards */
     int32_t *tip;         /* 3 n_faces: the tip at the corner of a pole */
     int32_t n_vertices, n_faces;
+    int32_t largest; /* index which is opened */
 } opener;
 
 /* Inside, and on no hard feature. */
@@ -69,10 +70,11 @@ static qc_status find_poles(opener *o, const qc_sizing *sizing, int32_t *n_poles
     *n_poles = 0;
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         if (!is_pole(o->matching, v)) continue;
-        if (o->matching->index4[v] > 4)
+        if (o->matching->index4[v] / 4 > o->largest)
             return qc__fail(o->ctx, QC_ERR_FAILED, v,
                             "vertex %d has index %d: like 1/z the map would have no end of quads "
-                            "around it; give the field vertices of index 1 or less there",
+                            "around it; give the field vertices of index 1 or less there, or set "
+                            "`largest` of qc.open and expect many quads",
                             (int)v, (int)o->matching->index4[v] / 4);
         choose_rings(o, sizing, v);
         (*n_poles)++;
@@ -218,7 +220,8 @@ static qc_status open_all(opener *o, const qc_matching *matching, const qc_sizin
 }
 
 qc_status qc_matching_open(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
-                           qc_mesh **mesh, qc_sizing **sizing_out, qc_matching **matching_out) {
+                           int32_t largest, qc_mesh **mesh, qc_sizing **sizing_out,
+                           qc_matching **matching_out) {
     const qc_mesh *old = matching->field->mesh;
     if (sizing->mesh != old)
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
@@ -227,7 +230,8 @@ qc_status qc_matching_open(qc_ctx *ctx, const qc_matching *matching, const qc_si
                 .mesh = old,
                 .matching = matching,
                 .n_vertices = old->n_vertices,
-                .n_faces = old->n_faces};
+                .n_faces = old->n_faces,
+                .largest = largest};
     int32_t n_poles = 0;
     o.rings = QC__ZERO(ctx, int32_t, old->n_vertices);
     o.ratio = QC__NEW(ctx, double, old->n_vertices);

@@ -4,6 +4,10 @@
 
 #include <stdio.h>
 
+typedef struct params {
+    int64_t largest;
+} params;
+
 static qc_status publish(const qc_run *run, qc_mesh *mesh, qc_sizing *sizing,
                          qc_matching *matching) {
     char text[96];
@@ -20,13 +24,14 @@ static qc_status publish(const qc_run *run, qc_mesh *mesh, qc_sizing *sizing,
     return status;
 }
 
-static qc_status open_poles(const qc_run *run, const void *params) {
-    (void)params;
+static qc_status open_poles(const qc_run *run, const void *raw) {
+    const params *p = raw;
     qc_mesh *mesh = NULL;
     qc_sizing *sizing = NULL;
     qc_matching *matching = NULL;
-    const qc_status status = qc_matching_open(run->ctx, run->input(run, "matching"),
-                                              run->input(run, "sizing"), &mesh, &sizing, &matching);
+    const qc_status status =
+        qc_matching_open(run->ctx, run->input(run, "matching"), run->input(run, "sizing"),
+                         (int32_t)p->largest, &mesh, &sizing, &matching);
     return status ? status : publish(run, mesh, sizing, matching);
 }
 
@@ -38,6 +43,12 @@ static const qc_port outputs[] = {
     {"mesh", QC_TYPE_MESH, 0, "the same surface with a hole of no size at each pole"},
     {"sizing", QC_TYPE_SIZING, 0, "the sizing on that mesh"},
     {"matching", QC_TYPE_MATCHING, 0, "the field and its matching on that mesh"},
+};
+
+static const qc_param table[] = {
+    QC_PARAM_INT(params, largest, 1, 1, 100, "",
+                 "larger indices are an error which names the vertex: around them a map has many "
+                 "more quads than were asked for"),
 };
 
 const qc_stage qc_stage_open = {
@@ -58,8 +69,8 @@ const qc_stage qc_stage_open = {
     outputs,
     2,
     3,
-    NULL,
-    0,
-    0,
+    table,
+    1,
+    sizeof(params),
     open_poles,
 };

@@ -215,10 +215,11 @@ QC_API qc_status qc_matching_split(qc_ctx *ctx, const qc_matching *matching,
  * another one or the boundary and the star is not larger than half a quad: mesh lies on the same
  * surface. Old vertices keep their numbers, a pole that of its first tip. source_face as of the old
  * mesh; source_vertex of tips is that of the pole, of ring vertices -1. No pole: the same objects,
- * retained. Errors: ARGUMENT (sizing of another mesh; where = vertex: two poles are neighbours, run
- * qc_matching_split before), FAILED (where = vertex: of index 2 or more), NOMEM, CANCELLED. */
+ * retained. largest: index that is opened, usually 1 (docs/theory/poles.md). Errors: ARGUMENT
+ * (sizing of another mesh; where = vertex: two poles are neighbours, run qc_matching_split before),
+ * FAILED (where = vertex: of larger index), NOMEM, CANCELLED. */
 QC_API qc_status qc_matching_open(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
-                                  qc_mesh **mesh, qc_sizing **sizing_out,
+                                  int32_t largest, qc_mesh **mesh, qc_sizing **sizing_out,
                                   qc_matching **matching_out);
 
 /* Directional's .rawfield (`N F`, then N vectors a face) and .rosy (F, N, then one vector a face),

@@ -119,7 +119,7 @@ static void opening_keeps_the_field(void **state) {
         qc_mesh *mesh = NULL, *same = NULL;
         qc_matching *m = height_field(ctx, old, 2), *opened = NULL, *again = NULL;
         qc_sizing *sizing = sizing_of(ctx, old, length[i / 3] * scale[i % 3]), *s = NULL, *r = NULL;
-        assert_int_equal(qc_matching_open(ctx, m, sizing, &mesh, &s, &opened), QC_OK);
+        assert_int_equal(qc_matching_open(ctx, m, sizing, 1, &mesh, &s, &opened), QC_OK);
         assert_int_equal(mesh->n_poles, 2);
         assert_int_equal(mesh->n_boundary_loops, 2);
         assert_int_equal(mesh->euler, 0);
@@ -140,7 +140,7 @@ static void opening_keeps_the_field(void **state) {
             assert_int_equal(opened->index4[v],
                              v < old->n_vertices && m->index4[v] != 4 ? m->index4[v] : 0);
         for (int32_t e = 0; e < mesh->n_edges; e++) assert_int_equal(opened->m[e], 0);
-        assert_int_equal(qc_matching_open(ctx, opened, s, &same, &r, &again), QC_OK);
+        assert_int_equal(qc_matching_open(ctx, opened, s, 1, &same, &r, &again), QC_OK);
         assert_ptr_equal(same, mesh);
         assert_ptr_equal(again, opened);
         const void *made[] = {same, r, again, mesh, s, opened, m, sizing, old};
@@ -157,13 +157,13 @@ static void neighbours_are_refused(void **state) {
     g[old->n_vertices - 1] = -10;
     qc_matching *m = gradient(ctx, old, g), *out = NULL;
     qc_sizing *sizing = sizing_of(ctx, old, 1), *s = NULL;
-    assert_int_equal(qc_matching_open(ctx, m, sizing, &mesh, &s, &out), QC_ERR_ARGUMENT);
+    assert_int_equal(qc_matching_open(ctx, m, sizing, 1, &mesh, &s, &out), QC_ERR_ARGUMENT);
     assert_non_null(strstr(qc_ctx_error(ctx)->text, "qc.split"));
     qc_matching *split = NULL;
     qc_sizing *finer = NULL;
     qc_mesh *between = NULL;
     assert_int_equal(qc_matching_split(ctx, m, sizing, &between, &finer, &split), QC_OK);
-    assert_int_equal(qc_matching_open(ctx, split, finer, &mesh, &s, &out), QC_OK);
+    assert_int_equal(qc_matching_open(ctx, split, finer, 1, &mesh, &s, &out), QC_OK);
     assert_true(mesh->n_poles >= 2 && mesh->n_boundary_loops == mesh->n_poles);
     const void *made[] = {mesh, s, out, between, finer, split, m, sizing, old};
     for (size_t k = 0; k < sizeof made / sizeof *made; k++) qc_object_release(made[k]);
@@ -171,7 +171,7 @@ static void neighbours_are_refused(void **state) {
 }
 
 /* The constant field of the plane on the sphere, by stereographic projection, has index 2. */
-static void dipoles_are_refused(void **state) {
+static void dipoles_are_opened_on_request(void **state) {
     qc_ctx *ctx = *state;
     qc_mesh *old = ellipsoid(ctx, 16, 12, 1, 1, 1), *mesh = NULL;
     const size_t n = (size_t)old->n_faces;
@@ -197,10 +197,13 @@ static void dipoles_are_refused(void **state) {
     assert_int_equal(qc_matching_create(ctx, field, NULL, &m), QC_OK);
     assert_int_equal(m->n_singular, 1);
     assert_int_equal(m->index4[old->n_vertices - 1], 8);
-    assert_int_equal(qc_matching_open(ctx, m, sizing, &mesh, &s, &out), QC_ERR_FAILED);
+    assert_int_equal(qc_matching_open(ctx, m, sizing, 1, &mesh, &s, &out), QC_ERR_FAILED);
     assert_int_equal(qc_ctx_error(ctx)->where, old->n_vertices - 1);
     assert_null(mesh);
-    const void *made[] = {m, field, sizing, old};
+    assert_int_equal(qc_matching_open(ctx, m, sizing, 2, &mesh, &s, &out), QC_OK);
+    assert_int_equal(mesh->n_poles, 1);
+    assert_int_equal(mesh->n_boundary_loops, 1);
+    const void *made[] = {mesh, s, out, m, field, sizing, old};
     for (size_t k = 0; k < sizeof made / sizeof *made; k++) qc_object_release(made[k]);
     free(re);
     free(x);
@@ -208,9 +211,9 @@ static void dipoles_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(extrema_have_index_one),  cmocka_unit_test(linear_functions),
-        cmocka_unit_test(opening_keeps_the_field), cmocka_unit_test(neighbours_are_refused),
-        cmocka_unit_test(dipoles_are_refused),
+        cmocka_unit_test(extrema_have_index_one),        cmocka_unit_test(linear_functions),
+        cmocka_unit_test(opening_keeps_the_field),       cmocka_unit_test(neighbours_are_refused),
+        cmocka_unit_test(dipoles_are_opened_on_request),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
