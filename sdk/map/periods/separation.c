@@ -13,6 +13,9 @@ void qc__separation_free(qc__separation *s) {
     qc__free(s);
 }
 
+/* Of a path to a feature: on coarse meshes the vertices of one beside a point lie askew. */
+static const double least_slope = 0.7;
+
 typedef struct bridge { /* mesh edge joining the cells of two sites */
     int32_t a, b, edge; /* a < b */
     double length;
@@ -221,8 +224,8 @@ static int32_t find_path(const finder *f, const bridge *link, int32_t *v, int32_
 }
 
 /* Follows the path from site a to site b. The form f_b - f_a in the chart of the first face,
- * i^-turn (f_b - T) - f_a, is left in the sum; *parts tells which parts of it are one. Across a
- * feature the path must lead rather than along it. */
+ * i^-turn (f_b - T) - f_a, is left in the sum; *parts tells which parts of it are one. The path
+ * must not lead along a feature. */
 static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t *path,
                          int32_t ends[2], int32_t *parts) {
     const qc__seams *s = f->seams;
@@ -246,8 +249,8 @@ static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t 
     for (int32_t i = 0; i < walk->n; i++)
         add_translation(f, walk->segment[i], -qc__turn(1.0, walk->term_turn[i] - walk->turn));
     *parts &= given_parts(s, c, walk->turn);
-    if ((*parts == 1 && fabs(creal(way)) < fabs(cimag(way))) ||
-        (*parts == 2 && fabs(cimag(way)) < fabs(creal(way))))
+    if ((*parts == 1 && fabs(creal(way)) < least_slope * fabs(cimag(way))) ||
+        (*parts == 2 && fabs(cimag(way)) < least_slope * fabs(creal(way))))
         *parts = 0;
     return QC_OK;
 }
