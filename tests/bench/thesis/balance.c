@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DENSITIES = 3, COUNTS = 4, SCALES = 3 };
+enum { DENSITIES = 3, COUNTS = 4 };
 
 typedef struct setting {
     qc_ctx *ctx;
@@ -17,7 +17,7 @@ typedef struct setting {
 
 typedef struct sums {
     int32_t points;
-    double curl, harmonic, mean; /* E_D, E_H in quad areas; mean over slightly other densities */
+    double curl, harmonic; /* E_D, E_H in quad areas */
 } sums;
 
 static uint32_t step_of(const setting *s, const char *name) {
@@ -46,33 +46,22 @@ static qc_bag *copy(const setting *s, const qc_bag *from) {
     return bag;
 }
 
-/* One rounding says little: its error is that of a random target. The mean is over densities within
- * a few percent, at the same branch points. */
 static sums measure(const setting *s, const qc_bag *state) {
     const qc_matching *matching = qc_bag_latest(state, QC_TYPE_MATCHING);
-    sums out = {matching->n_singular, 0, 0, 0};
-    for (int i = 0; i < SCALES; i++) {
-        qc_bag *bag = copy(s, state);
-        set(s, "size", "quads", s->quads * (1 + 0.035 * ((i + SCALES / 2) % SCALES - SCALES / 2)));
-        run_steps(s, "size", "size", bag);
-        run_steps(s, "split", "round", bag);
-        const qc_corner_map *map = qc_bag_latest(bag, QC_TYPE_CORNER_MAP);
-        if (i == 0) {
-            out.curl = map->curl_energy / map->field_energy * s->quads;
-            out.harmonic = map->harmonic_energy;
-        }
-        out.mean += map->harmonic_energy / SCALES;
-        qc_bag_free(bag);
-    }
-    set(s, "size", "quads", s->quads);
+    qc_bag *bag = copy(s, state);
+    run_steps(s, "split", "round", bag);
+    const qc_corner_map *map = qc_bag_latest(bag, QC_TYPE_CORNER_MAP);
+    const sums out = {matching->n_singular, map->curl_energy / map->field_energy * s->quads,
+                      map->harmonic_energy};
+    qc_bag_free(bag);
     return out;
 }
 
 static void row(const char *label, const setting *s, const sums *m) {
     const double percent = 100 / s->quads;
-    const double value[5] = {m->points, percent * m->curl, percent * m->harmonic,
-                             percent * (m->curl + m->harmonic), percent * (m->curl + m->mean)};
-    thesis_row(label, 5, value);
+    const double value[4] = {m->points, percent * m->curl, percent * m->harmonic,
+                             percent * (m->curl + m->harmonic)};
+    thesis_row(label, 4, value);
     fflush(stdout); /* a row takes minutes */
 }
 
@@ -87,7 +76,7 @@ static void at_density(const thesis_run *run, const setting *s, const qc_polygon
     run_steps(s, "balance", "balance", bag);
     const sums own = measure(s, bag);
     qc_bag_free(bag);
-    double least = own.curl + own.mean;
+    double least = own.curl + own.harmonic;
     snprintf(label, sizeof label, "%.0f quads, chosen", s->quads);
     row(label, s, &own);
     for (int i = 0; i < (run->quick ? 1 : COUNTS); i++) {
@@ -99,17 +88,17 @@ static void at_density(const thesis_run *run, const setting *s, const qc_polygon
         snprintf(label, sizeof label, "%.0f quads, count = %s", s->quads,
                  qc_pipeline_get(s->pipeline, "balance", "count"));
         row(label, s, &m);
-        least = fmin(least, m.curl + m.mean);
+        least = fmin(least, m.curl + m.harmonic);
     }
     set(s, "balance", "count", 0);
     qc_bag_free(state);
-    fprintf(stderr, "%.0f quads: chosen / least = %.3f\n", s->quads, (own.curl + own.mean) / least);
+    fprintf(stderr, "%.0f quads: chosen / least = %.3f\n", s->quads,
+            (own.curl + own.harmonic) / least);
 }
 
 void thesis_balance(thesis_run *run) {
     static const double quads[DENSITIES] = {1500, 5000, 20000};
-    static const char *const columns[] = {"branch points", "E_D %", "E_H %", "sum %",
-                                          "sum with mean E_H %"};
+    static const char *const columns[] = {"branch points", "E_D %", "E_H %", "sum %"};
     qc_default_pipeline_options options = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
     setting s = {run->ctx, NULL, 0};
     qc_registry *registry = NULL;
@@ -117,7 +106,7 @@ void thesis_balance(thesis_run *run) {
     bench_check(s.ctx, qc_registry_create(s.ctx, &registry));
     bench_check(s.ctx, qc_default_pipeline(s.ctx, registry, &options, &s.pipeline));
     qc_polygon_mesh *input = bench_read(s.ctx, thesis_mesh(run, "armadillo.obj"));
-    thesis_head("armadillo", 5, columns);
+    thesis_head("armadillo", 4, columns);
     for (int i = 0; i < (run->quick ? 1 : DENSITIES); i++) {
         s.quads = run->quick ? 500 : quads[i];
         set(&s, "size", "quads", s.quads);
