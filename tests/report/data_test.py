@@ -25,18 +25,14 @@ def read_obj(path):
 
 
 def quantised(points, arrays, name):
-    """Positions agree after one scaling and shift, to within two steps."""
+    """Positions agree with one step, found by regression, and a shift for each coordinate."""
     got = arrays[name]
     assert len(got) == 3 * len(points)
-    step = [0.0, 0.0]
-    for c in range(3):
-        low, high = min(p[c] for p in points), max(p[c] for p in points)
-        q = got[c::3]
-        step = max(step, [(high - low) / (max(q) - min(q)), c])
-    h, c = step
-    for c in range(3):
-        shift = points[0][c] - h * got[c]
-        assert all(abs(p[c] - shift - h * q) <= 2.1 * h for p, q in zip(points, got[c::3])), name
+    mean_p = [sum(p[c] for p in points) / len(points) for c in range(3)]
+    mean_q = [sum(got[c::3]) / len(points) for c in range(3)]
+    pairs = [(p[c] - mean_p[c], q - mean_q[c]) for c in range(3) for p, q in zip(points, got[c::3])]
+    step = sum(p * q for p, q in pairs) / sum(q * q for _, q in pairs)
+    assert all(abs(p - step * q) <= 0.6 * step for p, q in pairs), name
 
 
 def cones_are_those_of_the_quads(report, arrays):
