@@ -213,6 +213,7 @@ static void check_density(run *r) {
 
 static int write_all(run *r, const settings *s) {
     cli_session_quiet(&r->session);
+    r->session.progress = CLI_PROGRESS_NONE; /* the bar is full; what follows would begin another */
     if (cli_interrupted()) return cli_error(EXIT_INTERRUPTED, "interrupted");
     const double start = cli_seconds();
     check_density(r);
