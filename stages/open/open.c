@@ -4,6 +4,8 @@
 
 #include <stdio.h>
 
+#include "sdk/pipeline/outputs.h"
+
 typedef struct params {
     int64_t largest;
 } params;
@@ -14,14 +16,8 @@ static qc_status publish(const qc_run *run, qc_mesh *mesh, qc_sizing *sizing,
     snprintf(text, sizeof text, "%d vertices of positive integer index cut open",
              (int)mesh->n_poles);
     run->log(run, QC_LOG_INFO, text);
-    qc_status status = run->output(run, "mesh", mesh);
-    if (!status)
-        status = run->output(run, "sizing", sizing);
-    else
-        qc_object_release(sizing);
-    if (!status) return run->output(run, "matching", matching);
-    qc_object_release(matching);
-    return status;
+    const qc__output made[] = {{"mesh", mesh}, {"sizing", sizing}, {"matching", matching}};
+    return qc__publish(run, 3, made);
 }
 
 static qc_status open_poles(const qc_run *run, const void *raw) {

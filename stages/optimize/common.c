@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "sdk/pipeline/outputs.h"
+
 qc_status qc__optimize_begin(const qc_run *run, double lambda, qc_distortion **out) {
     return qc_distortion_create(run->ctx, run->input(run, "matching"), run->input(run, "sizing"),
                                 lambda, out);
@@ -54,9 +56,7 @@ qc_status qc__optimize_end(const qc_run *run, qc_status status, qc_distortion *d
         qc_object_release(matching);
         return status;
     }
-    qc_face_field *field = qc_object_retain(matching->field);
-    status = run->output(run, "matching", matching);
-    if (!status) return run->output(run, "field", field);
-    qc_object_release(field);
-    return status;
+    const qc__output made[] = {{"matching", matching},
+                               {"field", qc_object_retain(matching->field)}};
+    return qc__publish(run, 2, made);
 }

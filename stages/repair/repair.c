@@ -4,6 +4,8 @@
 
 #include <stdio.h>
 
+#include "sdk/pipeline/outputs.h"
+
 static void log_report(const qc_run *run, const qc_repair_report *report) {
     for (int32_t kind = 0; kind < QC_REPAIR_KINDS; kind++) {
         if (report->count[kind] == 0) continue;
@@ -18,12 +20,11 @@ static qc_status repair(const qc_run *run, const void *params) {
     (void)params;
     qc_mesh *mesh = NULL;
     qc_repair_report *report = NULL;
-    qc_status status = qc_mesh_repair(run->ctx, run->input(run, "soup"), &mesh, &report);
+    const qc_status status = qc_mesh_repair(run->ctx, run->input(run, "soup"), &mesh, &report);
     if (status) return status;
     log_report(run, report);
-    status = run->output(run, "mesh", mesh);
-    qc_status reported = run->output(run, "report", report);
-    return status ? status : reported;
+    const qc__output made[] = {{"mesh", mesh}, {"report", report}};
+    return qc__publish(run, 2, made);
 }
 
 static const qc_port inputs[] = {

@@ -5,20 +5,16 @@
 
 #include <stdio.h>
 
+#include "sdk/pipeline/outputs.h"
+
 static qc_status publish(const qc_run *run, const qc_mesh *old, qc_mesh *mesh,
                          qc_features *features, qc_sizing *sizing) {
     char text[96];
     snprintf(text, sizeof text, "%d edges split, %d faces more",
              (int)(mesh->n_vertices - old->n_vertices), (int)(mesh->n_faces - old->n_faces));
     run->log(run, QC_LOG_INFO, text);
-    qc_status status = run->output(run, "mesh", mesh);
-    if (!status)
-        status = run->output(run, "features", features);
-    else
-        qc_object_release(features);
-    if (!status && sizing) return run->output(run, "sizing", sizing);
-    qc_object_release(sizing);
-    return status;
+    const qc__output made[] = {{"mesh", mesh}, {"features", features}, {"sizing", sizing}};
+    return qc__publish(run, 3, made);
 }
 
 static qc_status split(const qc_run *run, const void *params) {

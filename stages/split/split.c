@@ -4,6 +4,8 @@
 
 #include <stdio.h>
 
+#include "sdk/pipeline/outputs.h"
+
 static qc_status publish(const qc_run *run, const qc_mesh *old, qc_mesh *mesh, qc_sizing *sizing,
                          qc_matching *matching) {
     char text[96];
@@ -11,14 +13,8 @@ static qc_status publish(const qc_run *run, const qc_mesh *old, qc_mesh *mesh, q
     snprintf(text, sizeof text, "%d edges split, %d faces more", n,
              (int)(mesh->n_faces - old->n_faces));
     run->log(run, QC_LOG_INFO, text);
-    qc_status status = run->output(run, "mesh", mesh);
-    if (!status)
-        status = run->output(run, "sizing", sizing);
-    else
-        qc_object_release(sizing);
-    if (!status) return run->output(run, "matching", matching);
-    qc_object_release(matching);
-    return status;
+    const qc__output made[] = {{"mesh", mesh}, {"sizing", sizing}, {"matching", matching}};
+    return qc__publish(run, 3, made);
 }
 
 static qc_status split(const qc_run *run, const void *params) {
