@@ -26,7 +26,7 @@ void qc__crowd_free(qc__crowd *c) {
 static double edge_length(const qc_mesh *mesh, int32_t p, int32_t q) {
     double d[3];
     qc__sub(mesh->position + 3 * (size_t)p, mesh->position + 3 * (size_t)q, d);
-    return sqrt(qc__dot(d, d));
+    return sqrt(qc__dot3(d, d));
 }
 
 typedef struct ring {

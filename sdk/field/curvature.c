@@ -34,9 +34,9 @@ static void bend(void *arg, int64_t begin, int64_t end, uint32_t worker) {
             const double *n = j->normal + 3 * (size_t)(h / 3), *o = j->normal + 3 * (size_t)(g / 3);
             qc__sub(j->mesh->position + 3 * (size_t)v[1], j->mesh->position + 3 * (size_t)v[0],
                     axis);
-            qc__cross(n, o, turn);
-            angle = atan2(sqrt(qc__dot(turn, turn)), qc__dot(n, o));
-            if (qc__dot(turn, axis) < 0) angle = -angle;
+            qc__cross3(n, o, turn);
+            angle = atan2(sqrt(qc__dot3(turn, turn)), qc__dot3(n, o));
+            if (qc__dot3(turn, axis) < 0) angle = -angle;
         }
         j->beta[e] = fabs(angle) > BENDING_NOISE ? angle : 0;
     }

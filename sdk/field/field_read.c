@@ -128,7 +128,7 @@ static qc__cplx nearest_cross(const double *vector, int32_t n, const double *u, 
         double largest = fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));
         if (!(largest > 0)) continue;
         double b[3] = {a[0] / largest, a[1] / largest, a[2] / largest};
-        qc__cplx x = qc__dot(b, u) + qc__dot(b, v) * I;
+        qc__cplx x = qc__dot3(b, u) + qc__dot3(b, v) * I;
         if (!(cabs(x) > 1e-6)) continue; /* perpendicular to the face */
         x = qc__unit(x);
         if (k == 0) first = x;

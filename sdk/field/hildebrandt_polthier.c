@@ -32,7 +32,7 @@ static void vertex_normals(const qc_mesh *mesh, const double *normal, const doub
         vertex_area[p] += area[t] / 3;
     }
     for (size_t p = 0; p < (size_t)mesh->n_vertices; p++) {
-        double *n = vertex_normal + 3 * p, r = sqrt(qc__dot(n, n));
+        double *n = vertex_normal + 3 * p, r = sqrt(qc__dot3(n, n));
         for (int i = 0; i < 3 && r > 0; i++) n[i] /= r;
     }
 }
@@ -46,12 +46,12 @@ static void add_edge(const qc_mesh *mesh, int32_t e, double beta, const double *
     const int32_t *v = mesh->edge_vertex + 2 * e;
     qc__sub(mesh->position + 3 * (size_t)v[1], mesh->position + 3 * (size_t)v[0], axis);
     for (size_t i = 0; i < 3; i++) bisector[i] = normal[3 * s + i] + normal[3 * t + i];
-    double length = sqrt(qc__dot(axis, axis)), r = sqrt(qc__dot(bisector, bisector));
+    double length = sqrt(qc__dot3(axis, axis)), r = sqrt(qc__dot3(bisector, bisector));
     if (!(length > 0) || !(r > 1e-9)) return; /* folded flat: no bisector */
     for (int i = 0; i < 3; i++) bisector[i] /= r, axis[i] /= length;
-    qc__cross(axis, bisector, b);
+    qc__cross3(axis, bisector, b);
     for (int i = 0; i < 2; i++) {
-        double cosine = qc__dot(vertex_normal + 3 * (size_t)v[i], bisector);
+        double cosine = qc__dot3(vertex_normal + 3 * (size_t)v[i], bisector);
         add_square(tensor + 6 * (size_t)v[i], cosine * length * sin(beta / 2), b);
     }
 }

@@ -4,6 +4,7 @@
 #define QC_FIELD_INTERNAL_H
 
 #include "sdk/base/internal.h"
+#include "sdk/mesh/internal.h"
 #include <qc/field.h>
 
 #include <complex.h>
@@ -140,14 +141,6 @@ qc_status qc__curvature_normal_cycle(qc_ctx *ctx, const qc_mesh *mesh, double ra
                                      const double *real_axis, const double *imaginary_axis,
                                      double *shape);
 
-static inline double qc__dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static inline void qc__cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
 static inline void qc__sub(const double a[3], const double b[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = a[i] - b[i];
 }

@@ -29,7 +29,7 @@ typedef struct cycle_job {
 /* Share of segment a, a + d inside the ball of the given radius about 0: roots of |a + u d|^2 =
  * r^2. */
 static double share_inside(const double a[3], const double d[3], double r) {
-    double dd = qc__dot(d, d), ad = qc__dot(a, d), disc = ad * ad - dd * (qc__dot(a, a) - r * r);
+    double dd = qc__dot3(d, d), ad = qc__dot3(a, d), disc = ad * ad - dd * (qc__dot3(a, a) - r * r);
     if (!(disc > 0) || !(dd > 0)) return 0;
     double root = sqrt(disc), lo = (-ad - root) / dd, hi = (-ad + root) / dd;
     lo = lo < 0 ? 0 : lo;
@@ -50,7 +50,7 @@ static double add_halfedge(const patch *face, int k, ball *B, double *length) {
     qc__sub(p, B->centre, a);
     qc__sub(q, p, e);
     double share = share_inside(a, e, B->radius);
-    *length = sqrt(qc__dot(e, e));
+    *length = sqrt(qc__dot3(e, e));
     if (share > 0 && face->beta[k] != 0) {
         double w = face->beta[k] * share / (2 * *length);
         for (int i = 0, m = 0; i < 3; i++)
@@ -92,7 +92,7 @@ static double ball_radius(const cycle_job *j, int32_t p) {
     do {
         double d[3];
         qc__sub(j->mesh->position + 3 * (size_t)j->mesh->face_vertex[qc_next(c)], centre, d);
-        sum += sqrt(qc__dot(d, d));
+        sum += sqrt(qc__dot3(d, d));
         n++;
         c = qc_corner_ccw(j->mesh, c);
     } while (c >= 0 && c != first);
@@ -122,10 +122,10 @@ static void restrict_to_faces(const qc_mesh *mesh, const double *tensor, const d
             for (size_t i = 0; i < 6; i++)
                 T[i] += tensor[6 * (size_t)mesh->face_vertex[3 * t + k] + i] / 3;
         const double row[3][3] = {{T[0], T[1], T[2]}, {T[1], T[3], T[4]}, {T[2], T[4], T[5]}};
-        for (int i = 0; i < 3; i++) Tu[i] = qc__dot(row[i], u), Tv[i] = qc__dot(row[i], v);
-        shape[3 * t] = qc__dot(v, Tv);
-        shape[3 * t + 1] = -qc__dot(u, Tv);
-        shape[3 * t + 2] = qc__dot(u, Tu);
+        for (int i = 0; i < 3; i++) Tu[i] = qc__dot3(row[i], u), Tv[i] = qc__dot3(row[i], v);
+        shape[3 * t] = qc__dot3(v, Tv);
+        shape[3 * t + 1] = -qc__dot3(u, Tv);
+        shape[3 * t + 2] = qc__dot3(u, Tu);
     }
 }
 

@@ -43,7 +43,7 @@ static int32_t pole_corner(const opener *o, int32_t t) {
 static double distance(const qc_mesh *mesh, int32_t v, int32_t w) {
     double d[3];
     qc__sub(mesh->position + 3 * (size_t)v, mesh->position + 3 * (size_t)w, d);
-    return sqrt(qc__dot(d, d));
+    return sqrt(qc__dot3(d, d));
 }
 
 /* Rings of equal ratio, at least one half, from the star to two thirds of it or half a quad. */

@@ -112,21 +112,4 @@ qc_status qc__visit_all(qc_ctx *ctx, qc__relaxation *r, qc__visit *visit);
 void qc__towards_squares(qc__relaxation *r, int32_t v);
 void qc__improve_worst(qc__relaxation *r, int32_t v);
 
-static inline double qc__dot3(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-static inline void qc__cross3(const double a[3], const double b[3], double c[3]) {
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-/* The point of a face with barycentric coordinates w. */
-static inline void qc__face_point(const qc_mesh *m, int32_t t, const double w[3], double x[3]) {
-    for (int i = 0; i < 3; i++) {
-        x[i] = 0;
-        for (int k = 0; k < 3; k++)
-            x[i] += w[k] * m->position[3 * (int64_t)m->face_vertex[3 * (int64_t)t + k] + i];
-    }
-}
-
 #endif

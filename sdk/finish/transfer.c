@@ -66,26 +66,6 @@ static void blend(double uv[3][2], const double w[3], double out[2]) {
     for (int i = 0; i < 2; i++) out[i] = w[0] * uv[0][i] + w[1] * uv[1][i] + w[2] * uv[2][i];
 }
 
-/* Barycentric coordinates of the projection of x to the plane of a face; false without area. */
-static bool project(const qc_mesh *m, int32_t face, const double x[3], double w[3]) {
-    double e[2][3], d[3], n[3], c[3];
-    const double one[3] = {1, 0, 0};
-    qc__face_point(m, face, one, d);
-    for (int i = 0; i < 3; i++) d[i] = x[i] - d[i];
-    qc__halfedge_vector(m, 3 * face + 2, e[0]); /* from corner 0 to corner 1 */
-    qc__halfedge_vector(m, 3 * face + 1, e[1]); /* from corner 2 to corner 0 */
-    for (int i = 0; i < 3; i++) e[1][i] = -e[1][i];
-    qc__cross3(e[0], e[1], n);
-    const double square = qc__dot3(n, n);
-    if (!(square > 0)) return false;
-    qc__cross3(d, e[1], c);
-    w[1] = qc__dot3(c, n) / square;
-    qc__cross3(e[0], d, c);
-    w[2] = qc__dot3(c, n) / square;
-    w[0] = 1 - w[1] - w[2];
-    return true;
-}
-
 /* The map of the quad's centre, which is continued to its corners. */
 typedef struct chart_at {
     int32_t face, chart;
@@ -98,7 +78,7 @@ static bool same_side(const transfer *t, const chart_at *c, const spot *s, const
     double uv[3][2], w[3], expected[2], off = 0, far = 0;
     int32_t chart;
     if (!face_uvs(t, s->face, uv, &chart) || chart != c->chart) return false;
-    if (!project(t->mesh, c->face, x, w)) return false;
+    if (!qc__face_coordinates(t->mesh, c->face, x, w)) return false;
     blend((double(*)[2])c->uv, w, expected);
     blend(uv, s->weight, out);
     for (int i = 0; i < 2; i++) {

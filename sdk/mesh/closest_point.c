@@ -5,6 +5,7 @@
 #include <qc/closest_point.h>
 #include <string.h>
 
+#include "sdk/mesh/internal.h"
 #include "sdk/mesh/box_tree.h"
 
 struct qc_closest_tree {
@@ -29,10 +30,6 @@ static qc_status build(const qc_closest_point *self, qc_ctx *ctx, int32_t n, con
     return status;
 }
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* |p - (s a + t b)|^2 for p, a, b relative to the same corner; weight = (1 - s - t, s, t). */
 static double residual2(const double p[3], const double a[3], double s, const double b[3], double t,
                         double weight[3]) {
@@ -49,7 +46,7 @@ static double residual2(const double p[3], const double a[3], double s, const do
 
 static double at_corner(const double d[3], int k, double weight[3]) {
     for (int i = 0; i < 3; i++) weight[i] = i == k;
-    return dot(d, d);
+    return qc__dot3(d, d);
 }
 
 double qc_triangle_distance2(const double x[9], const double p[3], double weight[3]) {
@@ -61,11 +58,11 @@ double qc_triangle_distance2(const double x[9], const double p[3], double weight
         bp[k] = p[k] - x[3 + k];
         cp[k] = p[k] - x[6 + k];
     }
-    const double d1 = dot(b, ap), d2 = dot(c, ap);
+    const double d1 = qc__dot3(b, ap), d2 = qc__dot3(c, ap);
     if (d1 <= 0 && d2 <= 0) return at_corner(ap, 0, weight);
-    const double d3 = dot(b, bp), d4 = dot(c, bp);
+    const double d3 = qc__dot3(b, bp), d4 = qc__dot3(c, bp);
     if (d3 >= 0 && d4 <= d3) return at_corner(bp, 1, weight);
-    const double d5 = dot(b, cp), d6 = dot(c, cp);
+    const double d5 = qc__dot3(b, cp), d6 = qc__dot3(c, cp);
     if (d6 >= 0 && d5 <= d6) return at_corner(cp, 2, weight);
     const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
     if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3)
@@ -78,7 +75,7 @@ double qc_triangle_distance2(const double x[9], const double p[3], double weight
     }
     const double sum = va + vb + vc;
     if (sum > 0) return residual2(ap, b, vb / sum, c, vc / sum, weight);
-    const double a2 = dot(ap, ap), b2 = dot(bp, bp), c2 = dot(cp, cp);
+    const double a2 = qc__dot3(ap, ap), b2 = qc__dot3(bp, bp), c2 = qc__dot3(cp, cp);
     if (a2 <= b2 && a2 <= c2) return at_corner(ap, 0, weight);
     return b2 <= c2 ? at_corner(bp, 1, weight) : at_corner(cp, 2, weight);
 }

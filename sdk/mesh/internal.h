@@ -59,6 +59,25 @@ static inline double qc__norm3(const double a[3]) {
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
+static inline double qc__dot3(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+static inline void qc__cross3(const double a[3], const double b[3], double c[3]) {
+    c[0] = a[1] * b[2] - a[2] * b[1];
+    c[1] = a[2] * b[0] - a[0] * b[2];
+    c[2] = a[0] * b[1] - a[1] * b[0];
+}
+/* The point of a face with barycentric coordinates w. */
+static inline void qc__face_point(const qc_mesh *m, int32_t t, const double w[3], double x[3]) {
+    for (int i = 0; i < 3; i++) {
+        x[i] = 0;
+        for (int k = 0; k < 3; k++)
+            x[i] += w[k] * m->position[3 * (int64_t)m->face_vertex[3 * (int64_t)t + k] + i];
+    }
+}
+/* Barycentric coordinates of the projection of x to the plane of a face; false without area. */
+bool qc__face_coordinates(const qc_mesh *mesh, int32_t face, const double x[3], double w[3]);
+
 /* out = end - start of halfedge h. */
 static inline void qc__halfedge_vector(const qc_mesh *m, int32_t h, double out[3]) {
     const double *p = m->position + 3 * (size_t)qc_halfedge_start(m, h);

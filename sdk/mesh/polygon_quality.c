@@ -7,16 +7,6 @@ static void difference(const double *position, int32_t from, int32_t to, double 
         d[k] = position[3 * (int64_t)to + k] - position[3 * (int64_t)from + k];
 }
 
-static void cross(const double a[3], const double b[3], double c[3]) {
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Twice the area vector. */
 static void area_vector(const double *position, const int32_t *v, int32_t n, double normal[3]) {
     normal[0] = normal[1] = normal[2] = 0;
@@ -24,7 +14,7 @@ static void area_vector(const double *position, const int32_t *v, int32_t n, dou
         double a[3], b[3], c[3];
         difference(position, v[0], v[i], a);
         difference(position, v[0], v[i + 1], b);
-        cross(a, b, c);
+        qc__cross3(a, b, c);
         for (int k = 0; k < 3; k++) normal[k] += c[k];
     }
 }
@@ -32,14 +22,14 @@ static void area_vector(const double *position, const int32_t *v, int32_t n, dou
 double qc__scaled_jacobian(const double *position, const int32_t *v, int32_t n) {
     double normal[3], least = 1;
     area_vector(position, v, n, normal);
-    const double area2 = dot(normal, normal);
+    const double area2 = qc__dot3(normal, normal);
     for (int32_t i = 0; i < n; i++) {
         double next[3], previous[3], c[3];
         difference(position, v[i], v[(i + 1) % n], next);
         difference(position, v[i], v[(i + n - 1) % n], previous);
-        cross(next, previous, c);
-        const double scale2 = dot(next, next) * dot(previous, previous) * area2;
-        least = fmin(least, scale2 > 0 ? dot(c, normal) / sqrt(scale2) : 0.0);
+        qc__cross3(next, previous, c);
+        const double scale2 = qc__dot3(next, next) * qc__dot3(previous, previous) * area2;
+        least = fmin(least, scale2 > 0 ? qc__dot3(c, normal) / sqrt(scale2) : 0.0);
     }
     return least;
 }

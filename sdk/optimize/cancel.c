@@ -43,7 +43,7 @@ static bool pair_is_known(const search *s, int32_t p, int32_t q) {
 static double distance(const qc_mesh *mesh, int32_t p, int32_t q) {
     double d[3];
     qc__sub(mesh->position + 3 * (size_t)p, mesh->position + 3 * (size_t)q, d);
-    return sqrt(qc__dot(d, d));
+    return sqrt(qc__dot3(d, d));
 }
 
 static double price(const search *s, int32_t p, int32_t q) {

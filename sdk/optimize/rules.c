@@ -13,7 +13,7 @@ bool qc__index_allowed(int32_t old, int32_t new) {
 static double distance2(const qc_mesh *mesh, int32_t p, int32_t q) {
     double d[3];
     qc__sub(mesh->position + 3 * (size_t)p, mesh->position + 3 * (size_t)q, d);
-    return qc__dot(d, d);
+    return qc__dot3(d, d);
 }
 
 /* Squared distance from p to the nearest other branch point, of those reached over edges inside the

@@ -3,6 +3,7 @@
 #include <complex.h>
 #include <math.h>
 
+#include "sdk/mesh/internal.h"
 #include "sdk/remesh/internal.h"
 
 /* Faces of a mesh by the face of the input they come from, as linked lists. */
@@ -39,34 +40,6 @@ static const double *corner(const qc_mesh *mesh, int32_t t, int k) {
     return mesh->position + 3 * (int64_t)mesh->face_vertex[3 * (int64_t)t + k];
 }
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++)
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Barycentric coordinates of the projection of p to face t; false when it has no area. */
-static bool project(const qc_mesh *mesh, int32_t t, const double p[3], double weight[3]) {
-    double e[2][3], d[3], n[3], c[3];
-    for (int i = 0; i < 3; i++) {
-        e[0][i] = corner(mesh, t, 1)[i] - corner(mesh, t, 0)[i];
-        e[1][i] = corner(mesh, t, 2)[i] - corner(mesh, t, 0)[i];
-        d[i] = p[i] - corner(mesh, t, 0)[i];
-    }
-    cross(e[0], e[1], n);
-    const double square = dot(n, n);
-    if (!(square > 0)) return false;
-    cross(d, e[1], c);
-    weight[1] = dot(c, n) / square;
-    cross(e[0], d, c);
-    weight[2] = dot(c, n) / square;
-    weight[0] = 1 - weight[1] - weight[2];
-    return true;
-}
-
 /* Of the triangles of a polygon the one which holds p best, and the coordinates of p there; -1 =
  * none.
  */
@@ -76,7 +49,7 @@ static int32_t place(const qc_mesh *mesh, const by_source *s, int32_t source, co
     int32_t found = -1;
     if (source < 0 || source >= s->n) return -1;
     for (int32_t t = s->first[source]; t >= 0; t = s->next[t]) {
-        if (!project(mesh, t, p, w)) continue;
+        if (!qc__face_coordinates(mesh, t, p, w)) continue;
         const double least = fmin(w[0], fmin(w[1], w[2]));
         if (least <= best) continue;
         best = least;
@@ -137,7 +110,7 @@ static void add_cross(const qc_mesh *mesh, const by_source *s, const qc_face_fie
         for (int k = 0; k < 2; k++)
             e[k][i] = corner(refined, t, k + 1)[i] - corner(refined, t, 0)[i];
     }
-    cross(e[0], e[1], n);
+    qc__cross3(e[0], e[1], n);
     const int32_t f = place(mesh, s, refined->source_face ? refined->source_face[t] : t, middle, w);
     if (f < 0) return;
     const double *axes = coarse + 6 * (int64_t)f;
@@ -148,7 +121,7 @@ static void add_cross(const qc_mesh *mesh, const by_source *s, const qc_face_fie
         y += d * axes[3 + i];
     }
     const double _Complex z = x + y * I;
-    sum[f] += sqrt(dot(n, n)) * z * z * z * z;
+    sum[f] += sqrt(qc__dot3(n, n)) * z * z * z * z;
 }
 
 /* Real and imaginary axis of each face, 6 numbers. */

@@ -10,20 +10,6 @@ static void difference(const qc_polygon_mesh *m, int32_t from, int32_t to, doubl
         d[k] = m->position[3 * (int64_t)to + k] - m->position[3 * (int64_t)from + k];
 }
 
-static void cross(const double a[3], const double b[3], double c[3]) {
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double length(const double a[3]) {
-    return sqrt(dot(a, a));
-}
-
 /* Every undirected edge once: the corners are bucketed by the lower end of the edge they start, and
  * each bucket is sorted by the higher end. */
 static void add_bucket_edges(const qc_polygon_mesh *m, int32_t low, int32_t *high, int32_t n,
@@ -38,7 +24,7 @@ static void add_bucket_edges(const qc_polygon_mesh *m, int32_t low, int32_t *hig
         if (i > 0 && high[i] == high[i - 1]) continue;
         double d[3];
         difference(m, low, high[i], d);
-        const double l = length(d);
+        const double l = qc__norm3(d);
         report->quads.edges += 1;
         report->quads.edge_sum += l;
         report->quads.edge_sum2 += l * l;
@@ -84,8 +70,8 @@ static void add_corners(const qc_polygon_mesh *m, int32_t f, qc_report *report) 
         double to_next[3], to_previous[3], c[3];
         difference(m, v[i], v[(i + 1) % n], to_next);
         difference(m, v[i], v[(i + n - 1) % n], to_previous);
-        cross(to_next, to_previous, c);
-        const double angle = atan2(length(c), dot(to_next, to_previous));
+        qc__cross3(to_next, to_previous, c);
+        const double angle = atan2(qc__norm3(c), qc__dot3(to_next, to_previous));
         report->quads.corners += 1;
         report->quads.angle_sum += angle;
         report->quads.angle_sum2 += angle * angle;
