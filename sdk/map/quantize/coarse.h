@@ -1,0 +1,31 @@
+/* The coarse complex of a seamless map: what is left of the mesh when every vertex which need not
+ * be a lattice point is removed in the parameter domain (docs/theory/quantization.md; after
+ * Coudert-Osmont et al. 2024). Internal to sdk/map/quantize.
+ *
+ * An intrinsic triangulation: triangles may be glued to themselves and share more than one edge.
+ * Every halfedge has a vector in the chart of its own triangle, exact in units of 2^-bits. */
+#ifndef QC_MAP_QUANTIZE_COARSE_H
+#define QC_MAP_QUANTIZE_COARSE_H
+
+#include "sdk/map/grid/internal.h"
+
+typedef struct qc__coarse {
+    int32_t n_triangles;
+    int32_t bits;
+    /* 3 n_triangles each; halfedge 3t+k is followed by 3t+(k+1)%3 */
+    qc__point *vector; /* counter-clockwise; those of a triangle add up to zero                   */
+    int32_t *twin;     /* -1 = boundary                                                           */
+    int8_t *rotation;  /* r with vector[twin] = -i^r vector: the other chart is turned by i^r     */
+    int8_t *axis;      /* -1, or on features k in 0..3: the vector runs along i^k and has to      */
+    int32_t *origin;   /* vertex of the mesh at its start                                         */
+} qc__coarse;
+
+/* Integer vectors x (3 n_triangles, parameter units) near scale 2^-bits vector: opposite halfedges
+ * are negatives up to the rotation, those of a triangle add up to zero and span a positive area,
+ * those of features run along their axis. Where so few quads leave none the scale is raised;
+ * *reached is the scale from which the result came. Errors: NOMEM, CANCELLED, FAILED (no scale up
+ * to 2^20 times as fine works: the complex itself is not positive). */
+qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, qc__point *x,
+                              double *reached);
+
+#endif
