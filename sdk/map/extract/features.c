@@ -7,7 +7,7 @@
 /* Whether the image of halfedge h of port's face is a feature which runs in direction d, +-d. */
 static bool runs_along(const qc_grid_map *g, int32_t h, int d, bool either) {
     if (g->axis[g->mesh->halfedge_edge[h]] < 0) return false;
-    const qc__point axis = qc__turn((qc__point){1, 0}, d);
+    const qc__point axis = qc__turn_point((qc__point){1, 0}, d);
     const qc__point e = qc__minus(qc__grid_corner(g, qc_prev(h)), qc__grid_corner(g, qc_next(h)));
     return qc__cross(e, axis) == 0 && (either || e.u * axis.u + e.v * axis.v > 0);
 }

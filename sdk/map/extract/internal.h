@@ -103,11 +103,11 @@ static inline int64_t qc__piece_end(const qc__pieces *p, int32_t i) {
 /* Corner k = 0..3 of the square of v in the chart of its face. */
 static inline qc__point qc__square_corner(const qc__visit *v, int k, int64_t unit) {
     const qc__point corner = {k == 1 || k == 2 ? unit : 0, k >= 2 ? unit : 0};
-    return qc__plus(v->at, qc__turn(corner, v->d));
+    return qc__plus(v->at, qc__turn_point(corner, v->d));
 }
 /* A point of the face in the square's frame [0, unit]^2. */
 static inline qc__point qc__in_square(const qc__visit *v, qc__point p) {
-    return qc__turn(qc__minus(p, v->at), 4 - v->d);
+    return qc__turn_point(qc__minus(p, v->at), 4 - v->d);
 }
 /* Whether the segment a b, or the triangle, meets the open square with lower left corner o. */
 bool qc__meets_square(qc__point a, qc__point b, qc__point o, int64_t unit);

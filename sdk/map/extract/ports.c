@@ -38,7 +38,7 @@ static void ports_on_side(qc__ports *p, int32_t id, int32_t h, qc__point at) {
     const qc__point e = qc__minus(qc__grid_corner(g, qc_prev(h)), qc__grid_corner(g, qc_next(h)));
     bool inside[4];
     for (int d = 0; d < 4; d++) {
-        const qc__point axis = qc__turn((qc__point){1, 0}, d);
+        const qc__point axis = qc__turn_point((qc__point){1, 0}, d);
         const int64_t side = qc__cross(e, axis);
         const bool along = e.u * axis.u + e.v * axis.v > 0;
         inside[d] = side > 0 || (side == 0 && (along || g->mesh->twin[h] < 0));

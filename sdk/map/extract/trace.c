@@ -12,7 +12,7 @@ typedef struct step {
 
 /* Sign of the corner's side of the line: positive = left. */
 static int side_of(const qc_grid_map *g, const step *s, int32_t c) {
-    const qc__point axis = qc__turn((qc__point){1, 0}, s->d);
+    const qc__point axis = qc__turn_point((qc__point){1, 0}, s->d);
     const int64_t side = qc__cross(axis, qc__minus(qc__grid_corner(g, c), s->from));
     return (side > 0) - (side < 0);
 }
@@ -87,7 +87,7 @@ static bool walk(const qc__ports *p, int32_t port, step *s) {
     int64_t limit = 4 * (int64_t)g->mesh->n_faces + 16;
     *s = (step){
         .face = p->face[port], .from = qc__port_point(p, port), .d = p->dir[port], .exit = -1};
-    s->to = qc__plus(s->from, qc__turn((qc__point){unit, 0}, s->d));
+    s->to = qc__plus(s->from, qc__turn_point((qc__point){unit, 0}, s->d));
     int k;
     while (qc__locate(g, s->face, s->to, &k) == QC__OUTSIDE)
         if (limit-- <= 0 || !advance(g, s)) return false;

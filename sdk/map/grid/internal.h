@@ -12,7 +12,7 @@ typedef struct qc__point {
 } qc__point;
 
 /* i^r p */
-static inline qc__point qc__turn(qc__point p, int r) {
+static inline qc__point qc__turn_point(qc__point p, int r) {
     switch (r & 3) {
     case 1:
         return (qc__point){-p.v, p.u};
@@ -56,14 +56,14 @@ static inline qc__point qc__grid_transition(const qc_grid_map *g, int32_t h, qc_
     const qc__point tau = {g->translation[2 * (int64_t)e] * unit,
                            g->translation[2 * (int64_t)e + 1] * unit};
     if (g->mesh->edge_halfedge[2 * (int64_t)e] == h)
-        return qc__plus(qc__turn(p, g->rotation[e]), tau);
-    return qc__turn(qc__minus(p, tau), 4 - g->rotation[e]);
+        return qc__plus(qc__turn_point(p, g->rotation[e]), tau);
+    return qc__turn_point(qc__minus(p, tau), 4 - g->rotation[e]);
 }
 
 /* Whether axis direction d (0 = +u, 1 = +v, ...) is in the half-open sector [a, b) of less than
  * half a turn, or in [a, b] when closed. */
 static inline bool qc__in_sector(qc__point a, qc__point b, bool closed, int d) {
-    const qc__point axis = qc__turn((qc__point){1, 0}, d);
+    const qc__point axis = qc__turn_point((qc__point){1, 0}, d);
     const int64_t from_a = qc__cross(a, axis), to_b = qc__cross(axis, b);
     return (from_a >= 0 && to_b > 0) || (closed && to_b == 0 && from_a > 0);
 }

@@ -16,8 +16,8 @@ static transform across(const qc__grid_build *b, transform g, int32_t h) {
     const int r = b->rotation[e];
     const qc__point tau = {b->translation[2 * (int64_t)e], b->translation[2 * (int64_t)e + 1]};
     if (b->mesh->edge_halfedge[2 * (int64_t)e] == h)
-        return (transform){(g.r + r) & 3, qc__plus(qc__turn(g.t, r), tau)};
-    return (transform){(g.r - r) & 3, qc__turn(qc__minus(g.t, tau), 4 - r)};
+        return (transform){(g.r + r) & 3, qc__plus(qc__turn_point(g.t, r), tau)};
+    return (transform){(g.r - r) & 3, qc__turn_point(qc__minus(g.t, tau), 4 - r)};
 }
 
 /* Once around vertex v, counter-clockwise from its first corner; the identity on the boundary. */
@@ -86,7 +86,7 @@ static qc_status spread(qc__grid_build *b, int32_t v, qc__point p) {
     transform g = {0, {0, 0}};
     int32_t c = first;
     do {
-        const qc__point q = qc__turn(p, g.r);
+        const qc__point q = qc__turn_point(p, g.r);
         const int64_t u = q.u + g.t.u * unit, w = q.v + g.t.v * unit;
         const double moved = fmax(fabs((double)u * scale - b->uv[2 * (int64_t)c]),
                                   fabs((double)w * scale - b->uv[2 * (int64_t)c + 1]));

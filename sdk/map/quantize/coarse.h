@@ -23,8 +23,8 @@ typedef struct qc__coarse {
 /* Integer vectors x (3 n_triangles, parameter units) near scale 2^-bits vector: opposite halfedges
  * are negatives up to the rotation, those of a triangle add up to zero and span a positive area,
  * those of features run along their axis. Where so few quads leave none the scale is raised;
- * *reached is the scale from which the result came. Errors: NOMEM, CANCELLED, FAILED (no scale up
- * to 2^20 times as fine works: the complex itself is not positive). */
+ * *reached is the scale from which the result came. Errors: NOMEM, CANCELLED, FAILED (the
+ * given vectors do not span positive areas; no scale up to 2^20 times as fine works). */
 qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, qc__point *x,
                               double *reached);
 
