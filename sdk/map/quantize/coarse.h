@@ -22,10 +22,11 @@ typedef struct qc__coarse {
 
 /* Integer vectors x (3 n_triangles, parameter units) near scale 2^-bits vector: opposite halfedges
  * are negatives up to the rotation, those of a triangle add up to zero and span a positive area,
- * those of features run along their axis. Where so few quads leave none the scale is raised;
- * *reached is the scale from which the result came. Errors: NOMEM, CANCELLED, FAILED (the
- * given vectors do not span positive areas; no scale up to 2^20 times as fine works). */
-qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, qc__point *x,
-                              double *reached);
+ * those of features run along their axis. quads > 0: then the scale is changed until they span
+ * about so many units, which is the number of quads; where so few leave no such vectors it is the
+ * least number found. *made is the number they span. Errors: NOMEM, CANCELLED, FAILED (the given
+ * vectors do not span positive areas; no scale up to 2^20 times as fine works). */
+qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, double quads,
+                              qc__point *x, double *made);
 
 #endif

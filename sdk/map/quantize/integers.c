@@ -5,10 +5,15 @@
  * finer one. From the feasible side the search then walks back towards the wanted scale, along
  * closed paths which lower the energy sum w |x - wanted|^2 and keep every area positive. */
 #include <math.h>
+#include <string.h>
 
 #include "sdk/map/quantize/integers.h"
 
-enum { MOST_REFINEMENTS = 40 /* by sqrt(2): 2^20 */ };
+enum {
+    MOST_REFINEMENTS = 40, /* by sqrt(2): 2^20 */
+    DENSITY_ROUNDS = 8
+};
+static const double good_miss = 0.02; /* of the number of quads */
 /* Of a path which mends a violation; of others it is what they gain. */
 static const double mending_limit = 200;
 
@@ -128,31 +133,46 @@ static qc_status find_feasible(qc__integers *q, double scale, int32_t *times) {
                     (int)q->coarse->n_triangles);
 }
 
-static qc_status search(qc__integers *q, double scale) {
+/* Unit squares which the vectors span: quads. */
+static double count_quads(const qc__integers *q) {
+    double area = 0;
+    for (int32_t t = 0; t < q->coarse->n_triangles; t++)
+        area += 0.5 * (double)qc__integers_area(q, t);
+    return area;
+}
+
+static qc_status move_towards(qc__integers *q, double scale) {
+    qc__integers_aim(q, scale);
+    qc__integers_measure(q);
+    return descend(q);
+}
+
+/* Changes the scale until the number of quads is right; the best vectors are left in q->best. */
+static qc_status meet_quads(qc__integers *q, double scale, double quads) {
+    const size_t bytes = sizeof *q->x * 3 * (size_t)q->coarse->n_triangles;
+    double best = INFINITY;
+    for (int32_t i = 0;; i++) {
+        const double made = count_quads(q), miss = fabs(log(made / quads));
+        if (miss < best) {
+            memcpy(q->best, q->x, bytes);
+            best = miss;
+        }
+        if (best < good_miss || i == DENSITY_ROUNDS) break;
+        scale *= fmin(fmax(sqrt(quads / made), 0.5), 2);
+        const qc_status status = move_towards(q, scale);
+        if (status != QC_OK) return status;
+    }
+    memcpy(q->x, q->best, bytes);
+    return QC_OK;
+}
+
+static qc_status search(qc__integers *q, double scale, double quads) {
     int32_t times;
     qc__integers_aim(q, scale);
     qc_status status = qc__integers_weigh(q);
     if (status == QC_OK) status = find_feasible(q, scale, &times);
-    while (status == QC_OK && times-- > 0) {
-        qc__integers_aim(q, finer(scale, times));
-        qc__integers_measure(q);
-        status = descend(q);
-    }
-    return status;
-}
-
-/* The scale at which the real vectors span the area of the integer ones. */
-static double scale_of(const qc__integers *q) {
-    const qc__coarse *c = q->coarse;
-    double real = 0, have = 0;
-    for (int32_t t = 0; t < c->n_triangles; t++) {
-        const qc__point *p = c->vector + 3 * (int64_t)t;
-        const double u0 = ldexp((double)p[0].u, -c->bits), v0 = ldexp((double)p[0].v, -c->bits);
-        const double u1 = ldexp((double)p[1].u, -c->bits), v1 = ldexp((double)p[1].v, -c->bits);
-        real += u0 * v1 - v0 * u1;
-        have += (double)qc__integers_area(q, t);
-    }
-    return sqrt(have / real);
+    while (status == QC_OK && times-- > 0) status = move_towards(q, finer(scale, times));
+    return status == QC_OK && quads > 0 ? meet_quads(q, scale, quads) : status;
 }
 
 static qc_status allocate(qc__integers *q) {
@@ -162,6 +182,7 @@ static qc_status allocate(qc__integers *q) {
         if (c->origin[h] >= q->n_origins) q->n_origins = c->origin[h] + 1;
         q->has_boundary |= c->twin[h] < 0;
     }
+    q->best = QC__NEW(q->ctx, qc__point, n);
     q->wanted = QC__NEW(q->ctx, double, 2 * (int64_t)n);
     q->weight = QC__NEW(q->ctx, double, n);
     q->turns = QC__ZERO(q->ctx, int32_t, q->n_origins);
@@ -169,24 +190,24 @@ static qc_status allocate(qc__integers *q) {
     q->distance = QC__NEW(q->ctx, double, 4 * (int64_t)n);
     q->parent = QC__NEW(q->ctx, int32_t, 4 * (int64_t)n);
     q->touched = QC__NEW(q->ctx, int32_t, 4 * (int64_t)n);
-    if (!q->wanted || !q->weight || !q->turns || !q->expected || !q->distance || !q->parent ||
-        !q->touched)
+    if (!q->best || !q->wanted || !q->weight || !q->turns || !q->expected || !q->distance ||
+        !q->parent || !q->touched)
         return QC_ERR_NOMEM;
     for (int32_t s = 0; s < 4 * n; s++) q->distance[s] = INFINITY;
     return qc__heap_create(q->ctx, 4 * n, q->distance, &q->heap);
 }
 
-qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, qc__point *x,
-                              double *reached) {
+qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, double quads,
+                              qc__point *x, double *made) {
     qc__integers q = {.ctx = ctx, .coarse = coarse};
     q.x = QC__NEW(ctx, qc__point, 3 * (int64_t)coarse->n_triangles);
     qc_status status = q.x ? allocate(&q) : QC_ERR_NOMEM;
-    if (status == QC_OK) status = search(&q, scale);
+    if (status == QC_OK) status = search(&q, scale, quads);
     for (int32_t h = 0; h < 3 * coarse->n_triangles && status == QC_OK; h++) x[h] = q.x[h];
-    if (status == QC_OK) *reached = scale_of(&q);
+    if (status == QC_OK) *made = count_quads(&q);
     qc__heap_free(&q.heap);
-    void *const blocks[] = {q.x,        q.wanted, q.weight,  q.turns, q.expected,
-                            q.distance, q.parent, q.touched, q.path};
+    void *const blocks[] = {q.x,        q.best,     q.wanted, q.weight,  q.turns,
+                            q.expected, q.distance, q.parent, q.touched, q.path};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

@@ -19,9 +19,9 @@ typedef struct qc__integers {
     qc_ctx *ctx;
     const qc__coarse *coarse;
     bool has_boundary;
-    qc__point *x;   /* 3 n_triangles */
-    double *wanted; /* 6 n_triangles: the real vectors at the present scale */
-    double *weight; /* 3 n_triangles: of the edges in the energy */
+    qc__point *x, *best; /* 3 n_triangles */
+    double *wanted;      /* 6 n_triangles: the real vectors at the present scale */
+    double *weight;      /* 3 n_triangles: of the edges in the energy */
     /* winding: axis directions in the sectors about a vertex of the mesh */
     int32_t n_origins;
     int32_t *turns, *expected; /* n_origins; expected -1 = any */

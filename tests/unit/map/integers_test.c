@@ -174,14 +174,17 @@ static void vectors_are_feasible_at_every_scale(void **state) {
             if (seed > 0) deform(&b, &random);
             for (size_t s = 0; s < sizeof scales / sizeof *scales; s++) {
                 qc__point x[36];
-                double reached = 0;
-                must(ctx, qc__coarse_integers(ctx, &b.c, scales[s], x, &reached));
+                double made = 0;
+                must(ctx, qc__coarse_integers(ctx, &b.c, scales[s], 0, x, &made));
                 check_vectors(&CASES[i], &b, x);
                 double real = total(&b, b.vector);
                 real = ldexp(real, -2 * BITS);
-                const double made = total(&b, x);
-                assert_true(fabs(reached - sqrt(made / real)) < 1e-9 * reached);
-                if (scales[s] > 100) assert_true(fabs(reached / scales[s] - 1) < 0.05);
+                assert_true(made == total(&b, x));
+                const double wanted = real * scales[s] * scales[s];
+                if (scales[s] > 100) assert_true(fabs(made / wanted - 1) < 0.05);
+                must(ctx, qc__coarse_integers(ctx, &b.c, scales[s], 4 * wanted, x, &made));
+                check_vectors(&CASES[i], &b, x);
+                if (scales[s] > 100) assert_true(fabs(made / (4 * wanted) - 1) < 0.03);
             }
         }
     qc_ctx_free(ctx);
@@ -198,13 +201,13 @@ static void integers_stay(void **state) {
     holder b;
     build(&k, &b);
     qc__point x[36];
-    double reached;
-    must(ctx, qc__coarse_integers(ctx, &b.c, 1, x, &reached));
+    double made;
+    must(ctx, qc__coarse_integers(ctx, &b.c, 1, 0, x, &made));
     for (int32_t h = 0; h < 36; h++) {
         assert_int_equal(x[h].u << BITS, b.vector[h].u);
         assert_int_equal(x[h].v << BITS, b.vector[h].v);
     }
-    assert_true(fabs(reached - 1) < 1e-12);
+    assert_true(made == 82);
     qc_ctx_free(ctx);
 }
 
@@ -215,9 +218,9 @@ static void a_folded_complex_is_refused(void **state) {
     build(&CASES[0], &b);
     for (int32_t h = 0; h < 36; h++) b.vector[h] = (qc__point){b.vector[h].v, b.vector[h].u};
     qc__point x[36];
-    double reached = -1;
-    assert_int_equal(qc__coarse_integers(ctx, &b.c, 1, x, &reached), QC_ERR_FAILED);
-    assert_true(reached == -1);
+    double made = -1;
+    assert_int_equal(qc__coarse_integers(ctx, &b.c, 1, 0, x, &made), QC_ERR_FAILED);
+    assert_true(made == -1);
     qc_ctx_free(ctx);
 }
 
