@@ -17,6 +17,7 @@ install(TARGETS quadcover_shared quadcover_headers EXPORT QuadCoverTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/plugins/template
+        ${PROJECT_SOURCE_DIR}/docs/examples
         DESTINATION ${CMAKE_INSTALL_DATADIR}/quadcover PATTERN "build*" EXCLUDE)
 
 set(_qc_package ${CMAKE_INSTALL_LIBDIR}/cmake/QuadCover)

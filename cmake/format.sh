@@ -7,4 +7,4 @@ case ${1:-check-format} in
 format) set -- -i ;;
 *) set -- --dry-run --Werror ;;
 esac
-git ls-files -z -- '*.c' '*.h' '*.cc' | xargs -0 clang-format "$@"
+git ls-files -z -- '*.c' '*.h' '*.cpp' '*.hpp' | xargs -0 clang-format "$@"

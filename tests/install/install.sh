@@ -1,6 +1,6 @@
 #!/bin/sh
 # install.sh SOURCE BUILD: installs BUILD into a scratch prefix and uses it from outside. Environment:
-# CMAKE, CC, PKG_CONFIG, SANITIZE, LIBDIR, PLUGINS (those which were built).
+# CMAKE, CC, CXX, PKG_CONFIG, SANITIZE, LIBDIR, PLUGINS (those which were built).
 set -e
 source=$1 build=$2 here=$(dirname "$0")
 scratch=$(mktemp -d)
@@ -9,7 +9,8 @@ prefix=$scratch/prefix
 say() { echo "--- $*"; }
 die() { echo "FAILED: $*"; exit 1; }
 if [ -n "$SANITIZE" ]; then
-    export CFLAGS="-fsanitize=$SANITIZE" LDFLAGS="-fsanitize=$SANITIZE" ASAN_OPTIONS=detect_leaks=0
+    export CFLAGS="-fsanitize=$SANITIZE" CXXFLAGS="-fsanitize=$SANITIZE" \
+        LDFLAGS="-fsanitize=$SANITIZE" ASAN_OPTIONS=detect_leaks=0
 fi
 
 say install
@@ -85,3 +86,6 @@ done
     2> "$scratch/error" || die "a stage without its plugin was accepted"
 grep -q org.example.smooth_field "$scratch/error" || die "the error names no stage: $(cat "$scratch/error")"
 [ ! -e "$scratch/no.obj" ] || die "a file was left by a failed run"
+
+say examples
+sh "$here/examples.sh" "$prefix"
