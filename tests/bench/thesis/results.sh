@@ -1,6 +1,7 @@
 #!/bin/sh
 # results.sh BIN PAGE FIGURES [PART ...]: rewrites the parts of docs/results.md, all by default: those of
-# `bench_thesis --list` and acceptance. BIN is the folder of the programs.
+# `bench_thesis --list` and acceptance; corpus only when it is named. BIN is the folder of the programs, which the
+# corpus lies beside.
 set -eu
 bin=$1 page=$2 figures=$3
 shift 3
@@ -11,6 +12,8 @@ for part in "$@"; do
     echo "results: $part" >&2
     case $part in
     acceptance) set -- python3 "$here/../acceptance/acceptance.py" --program "$bin/quadcover" --markdown ;;
+    corpus) set -- python3 "$here/../acceptance/acceptance.py" --program "$bin/quadcover" --corpus "$bin/../corpus" \
+        --results "$bin/../corpus/results.jsonl" --modes fast --quads 1000 --memory 4096 --markdown ;;
     *) set -- "$bin/bench_thesis" --figures "$figures" "$part" ;;
     esac
     sh "$here/../common/page.sh" "$page" "$part" "$@"
