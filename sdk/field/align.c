@@ -1,4 +1,5 @@
-/* Alignment to feature edges: the faces on both sides of one get its direction. */
+/* Alignment to feature edges: the faces on both sides of one get its direction; and to the
+ * directions in which edges are to be longest. */
 #include "internal.h"
 
 /* Direction of face t along its feature edges as a fourth power; edges which contradict each other
@@ -36,4 +37,18 @@ qc_status qc_field_align(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge, 
     }
     qc__free(tangent);
     return status;
+}
+
+void qc_field_align_stretch(const qc_sizing *sizing, double strength, qc_complex *x, double *weight,
+                            uint8_t *trusted) {
+    static const double least = 1.1, full = 2; /* ratios of the two lengths */
+    for (int32_t t = 0; sizing->stretch && t < sizing->mesh->n_faces; t++) {
+        const qc_complex s = sizing->stretch[t];
+        const double ratio = 2 * hypot(s.re, s.im);
+        if (!(ratio >= log(least))) continue;
+        const double angle = atan2(s.im, s.re) / 2;
+        x[t] = (qc_complex){cos(angle), sin(angle)};
+        weight[t] = fmax(weight[t], strength * fmin(1, ratio / log(full)));
+        trusted[t] = 1;
+    }
 }

@@ -77,6 +77,20 @@ void qc__refinement_flags(const qc__refinement *b, const qc_mesh *old_mesh, cons
     }
 }
 
+/* Squares of directions turn twice with the frame. */
+static qc_status carry_stretch(qc_ctx *ctx, const qc__refinement *b, const qc_complex *old,
+                               qc_sizing *sizing) {
+    qc_complex *stretch = QC__NEW(ctx, qc_complex, b->mesh->n_faces);
+    if (!stretch) return QC_ERR_NOMEM;
+    for (int32_t t = 0; t < b->mesh->n_faces; t++) {
+        const qc__cplx turn = qc__c(b->turn[t]);
+        stretch[t] = qc__z(qc__c(old[b->parent[t]]) * turn * turn);
+    }
+    const qc_status status = qc_sizing_set_stretch(ctx, sizing, stretch);
+    qc__free(stretch);
+    return status;
+}
+
 qc_status qc__refinement_sizing(qc_ctx *ctx, const qc__refinement *b, const qc_sizing *old,
                                 qc_sizing **out) {
     double *length = NULL;
@@ -85,9 +99,15 @@ qc_status qc__refinement_sizing(qc_ctx *ctx, const qc__refinement *b, const qc_s
         if (!length) return QC_ERR_NOMEM;
         for (int32_t t = 0; t < b->mesh->n_faces; t++) length[t] = old->length[b->parent[t]];
     }
-    const qc_status status =
-        qc_sizing_create(ctx, b->mesh, old->edge_length, old->target_quads, length, out);
+    qc_sizing *sizing = NULL;
+    qc_status status =
+        qc_sizing_create(ctx, b->mesh, old->edge_length, old->target_quads, length, &sizing);
+    if (status == QC_OK && old->stretch) status = carry_stretch(ctx, b, old->stretch, sizing);
     qc__free(length);
+    if (status == QC_OK)
+        *out = sizing;
+    else
+        qc_object_release(sizing);
     return status;
 }
 

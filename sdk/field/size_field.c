@@ -1,109 +1,32 @@
 /* Edge lengths which change over the surface: given by a file, painted, or bounded by the
- * curvature, and limited in how fast they grow. */
-#include <ctype.h>
+ * curvature, limited in how fast they grow, and different along the two principal directions. */
 #include <math.h>
 #include <string.h>
 
-#include "internal.h"
 #include "sdk/mesh/internal.h"
-
-/* --- values of a file ------------------------------------------------------------------------- */
-
-/* All numbers of a text; # begins a comment. */
-static qc_status parse_numbers(qc_ctx *ctx, const char *path, char *text, double **out,
-                               int64_t *n) {
-    int64_t line = 1, capacity = 0;
-    *out = NULL;
-    *n = 0;
-    for (char *p = text; *p;) {
-        if (*p == '\n') line++;
-        if (isspace((unsigned char)*p) || *p == ',') {
-            p++;
-        } else if (*p == '#') {
-            p += strcspn(p, "\n");
-        } else {
-            char *end;
-            const double x = qc__parse_double(p, &end);
-            if (end == p || !(x > 0) || !isfinite(x))
-                return qc__fail(ctx, QC_ERR_INPUT, line,
-                                "%s:%lld: '%.16s' is not a positive number; a length for each "
-                                "vertex or face is needed",
-                                path, (long long)line, p);
-            if (!qc__reserve(ctx, (void **)out, &capacity, *n + 1, sizeof **out))
-                return QC_ERR_NOMEM;
-            (*out)[(*n)++] = x;
-            p = end;
-        }
-    }
-    return QC_OK;
-}
-
-/* Mean of the values of the corners of face t; value counts vertices of the input. -1 where no
- * corner has one. */
-static double corner_mean(const qc_mesh *mesh, int32_t t, const double *value, int64_t n) {
-    double sum = 0;
-    int found = 0;
-    for (int k = 0; k < 3; k++) {
-        const int32_t v = mesh->face_vertex[3 * (int64_t)t + k];
-        const int32_t i = mesh->source_vertex ? mesh->source_vertex[v] : v;
-        if (i < 0 || i >= n) continue;
-        sum += value[i];
-        found++;
-    }
-    return found ? sum / found : -1;
-}
-
-static qc_status read_lengths(qc_ctx *ctx, const qc_mesh *mesh, const qc_size_options *o,
-                              double *length) {
-    char *text = NULL;
-    double *value = NULL;
-    int64_t n = 0;
-    size_t size;
-    qc_status status = qc__read_file(ctx, o->path, &text, &size);
-    if (status == QC_OK) status = parse_numbers(ctx, o->path, text, &value, &n);
-    const int32_t n_vertices = o->input ? o->input->n_vertices : mesh->n_vertices;
-    const int32_t n_faces = o->input ? o->input->n_faces : mesh->n_faces;
-    if (status == QC_OK && n != n_vertices && n != n_faces)
-        status = qc__fail(ctx, QC_ERR_INPUT, n,
-                          "%s: %lld lengths for a mesh of %d vertices and %d faces; give one for "
-                          "each vertex or for each face",
-                          o->path, (long long)n, (int)n_vertices, (int)n_faces);
-    for (int32_t t = 0; status == QC_OK && t < mesh->n_faces; t++) {
-        const int32_t f = mesh->source_face ? mesh->source_face[t] : t;
-        const double x = n == n_vertices ? corner_mean(mesh, t, value, n) : f >= 0 ? value[f] : -1;
-        if (x > 0) length[t] = x;
-    }
-    qc__free(text);
-    qc__free(value);
-    return status;
-}
+#include "size_file.h"
+#include "stretch.h"
 
 /* --- paint and curvature ---------------------------------------------------------------------- */
 
 static void paint(const qc_mesh *mesh, const qc_size_options *o, double *length) {
     const double least = 1 / (o->range * o->range), most = o->range * o->range;
     for (int32_t t = 0; t < mesh->n_faces; t++) {
-        const double q = corner_mean(mesh, t, o->input->quality, o->input->n_vertices);
+        const double q = qc__corner_mean(mesh, t, o->input->quality, o->input->n_vertices);
         length[t] /= sqrt(fmin(fmax(isfinite(q) ? q : 1, least), most));
     }
 }
 
-/* length <= turn / |kappa|: the surface turns by at most `turn` along an edge. The curvature is
- * that of disks of the radius of an edge. */
-static qc_status bend(qc_ctx *ctx, const qc_mesh *mesh, const qc_size_options *o, double *length) {
-    qc_complex *x = QC__NEW(ctx, qc_complex, mesh->n_faces);
-    double *kappa = QC__NEW(ctx, double, 2 * (int64_t)mesh->n_faces);
-    qc_status status = x && kappa ? QC_OK : QC_ERR_NOMEM;
-    if (status == QC_OK)
-        status = qc_field_curvature(ctx, mesh, QC_CURVATURE_COHEN_STEINER_MORVAN, o->edge_length, x,
-                                    kappa);
-    for (int32_t t = 0; status == QC_OK && t < mesh->n_faces; t++) {
-        const double k = fmax(fabs(kappa[2 * (int64_t)t]), fabs(kappa[2 * (int64_t)t + 1]));
+/* length <= turn / |kappa| in both directions: the surface turns by at most `turn` along an edge.
+ */
+static void bend(const qc_mesh *mesh, const qc_size_options *o, const qc_complex *x,
+                 const double *kappa, const qc_complex *stretch, double *length) {
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        const double longer = exp(qc__stretch_along(stretch[t], x[t]));
+        const double k =
+            fmax(fabs(kappa[2 * (int64_t)t]) * longer, fabs(kappa[2 * (int64_t)t + 1]) / longer);
         if (k * length[t] > o->turn) length[t] = fmax(o->turn / k, length[t] / o->range);
     }
-    qc__free(x);
-    qc__free(kappa);
-    return status;
 }
 
 /* --- gradation -------------------------------------------------------------------------------- */
@@ -168,8 +91,10 @@ static qc_status count_quads(qc_ctx *ctx, const qc_mesh *mesh, const double *len
 }
 
 static qc_status check(qc_ctx *ctx, const qc_size_options *o) {
-    if (!(o->edge_length > 0) || !(o->turn >= 0) || !(o->range >= 1) || !(o->gradation >= 0))
-        return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "edge length, turn, range or gradation is off");
+    if (!(o->edge_length > 0) || !(o->turn >= 0) || !(o->range >= 1) || !(o->gradation >= 0) ||
+        !(o->anisotropy >= 1))
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
+                        "edge length, turn, range, gradation or anisotropy is off");
     if (o->painted && (!o->input || !o->input->quality))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
                         "the input has no painted density; save it as PLY with the vertex property "
@@ -177,24 +102,72 @@ static qc_status check(qc_ctx *ctx, const qc_size_options *o) {
     return QC_OK;
 }
 
+/* What the lengths are made of. */
+typedef struct size_field {
+    double *length;      /* n_faces */
+    qc_complex *stretch; /* n_faces */
+    bool directed;       /* whether a stretch was asked for */
+    qc_complex *x;       /* n_faces, with curvatures: direction of the larger one */
+    double *kappa;       /* 2 n_faces */
+} size_field;
+
+/* The curvatures, of disks of the radius of an edge. */
+static qc_status find_curvature(qc_ctx *ctx, const qc_mesh *mesh, const qc_size_options *o,
+                                size_field *f) {
+    f->x = QC__NEW(ctx, qc_complex, mesh->n_faces);
+    f->kappa = QC__NEW(ctx, double, 2 * (int64_t)mesh->n_faces);
+    if (!f->x || !f->kappa) return QC_ERR_NOMEM;
+    return qc_field_curvature(ctx, mesh, QC_CURVATURE_COHEN_STEINER_MORVAN, o->edge_length, f->x,
+                              f->kappa);
+}
+
+static qc_status fill(qc_ctx *ctx, const qc_mesh *mesh, const qc_size_options *o, size_field *f) {
+    qc_status status = check(ctx, o);
+    for (int32_t t = 0; status == QC_OK && t < mesh->n_faces; t++) f->length[t] = o->edge_length;
+    if (status == QC_OK && (o->turn > 0 || o->anisotropy > 1))
+        status = find_curvature(ctx, mesh, o, f);
+    if (status == QC_OK && o->anisotropy > 1) {
+        f->directed = true;
+        status = qc__curvature_stretch(ctx, mesh, f->x, f->kappa, o->anisotropy, o->edge_length,
+                                       f->stretch);
+    }
+    if (status == QC_OK && o->path)
+        status = qc__size_file(ctx, mesh, o, f->length, f->stretch, &f->directed);
+    if (status == QC_OK && o->painted) paint(mesh, o, f->length);
+    if (status == QC_OK && o->turn > 0) bend(mesh, o, f->x, f->kappa, f->stretch, f->length);
+    if (status == QC_OK && o->gradation > 0) status = grade(ctx, mesh, o->gradation, f->length);
+    return status;
+}
+
+static qc_status publish(qc_ctx *ctx, const qc_mesh *mesh, double target_quads, const size_field *f,
+                         qc_sizing **out) {
+    double n = 0;
+    qc_status status = count_quads(ctx, mesh, f->length, &n);
+    if (status != QC_OK) return status;
+    const double scale = target_quads > 0 ? sqrt(n / target_quads) : 1;
+    qc_sizing *sizing = NULL;
+    for (int32_t t = 0; t < mesh->n_faces; t++) f->length[t] *= scale;
+    status =
+        qc_sizing_create(ctx, mesh, scale * sqrt(mesh->area / n), target_quads, f->length, &sizing);
+    if (status == QC_OK && f->directed) status = qc_sizing_set_stretch(ctx, sizing, f->stretch);
+    if (status == QC_OK)
+        *out = sizing;
+    else
+        qc_object_release(sizing);
+    return status;
+}
+
 qc_status qc_sizing_create_varying(qc_ctx *ctx, const qc_mesh *mesh, double target_quads,
                                    const qc_size_options *options, qc_sizing **out) {
     qc_size_options o = QC_SIZE_OPTIONS_INIT;
     memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
-    double *length = QC__NEW(ctx, double, mesh->n_faces), n = 0;
-    qc_status status = length ? check(ctx, &o) : QC_ERR_NOMEM;
-    for (int32_t t = 0; status == QC_OK && t < mesh->n_faces; t++) length[t] = o.edge_length;
-    if (status == QC_OK && o.path) status = read_lengths(ctx, mesh, &o, length);
-    if (status == QC_OK && o.painted) paint(mesh, &o, length);
-    if (status == QC_OK && o.turn > 0) status = bend(ctx, mesh, &o, length);
-    if (status == QC_OK && o.gradation > 0) status = grade(ctx, mesh, o.gradation, length);
-    if (status == QC_OK) status = count_quads(ctx, mesh, length, &n);
-    if (status == QC_OK) {
-        const double scale = target_quads > 0 ? sqrt(n / target_quads) : 1;
-        for (int32_t t = 0; t < mesh->n_faces; t++) length[t] *= scale;
-        status =
-            qc_sizing_create(ctx, mesh, scale * sqrt(mesh->area / n), target_quads, length, out);
-    }
-    qc__free(length);
+    size_field f = {QC__NEW(ctx, double, mesh->n_faces), QC__ZERO(ctx, qc_complex, mesh->n_faces),
+                    false, NULL, NULL};
+    qc_status status = f.length && f.stretch ? fill(ctx, mesh, &o, &f) : QC_ERR_NOMEM;
+    if (status == QC_OK) status = publish(ctx, mesh, target_quads, &f, out);
+    qc__free(f.length);
+    qc__free(f.stretch);
+    qc__free(f.x);
+    qc__free(f.kappa);
     return status;
 }

@@ -6,11 +6,16 @@
 typedef struct sizing_object {
     qc_sizing sizing;
     double *length;
+    qc_complex *stretch;
 } sizing_object;
+
+/* Largest ratio of two lengths. */
+static const double most_ratio = 1e4;
 
 static void sizing_destroy(qc_object *object) {
     sizing_object *o = (sizing_object *)object;
     qc__free(o->length);
+    qc__free(o->stretch);
     qc_object_release(o->sizing.mesh);
     qc__free(o);
 }
@@ -48,5 +53,22 @@ qc_status qc_sizing_create(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
         o->sizing.length = o->length;
     }
     *out = &o->sizing;
+    return QC_OK;
+}
+
+qc_status qc_sizing_set_stretch(qc_ctx *ctx, qc_sizing *sizing, const qc_complex *stretch) {
+    sizing_object *o = (sizing_object *)sizing;
+    const int32_t n = sizing->mesh->n_faces;
+    for (int32_t t = 0; t < n; t++)
+        if (!(2 * hypot(stretch[t].re, stretch[t].im) <= log(most_ratio)))
+            return qc__fail(ctx, QC_ERR_ARGUMENT, t,
+                            "the two edge lengths of face %d have a ratio beyond %g", (int)t,
+                            most_ratio);
+    qc_complex *copy = QC__NEW(ctx, qc_complex, n);
+    if (!copy) return QC_ERR_NOMEM;
+    memcpy(copy, stretch, (size_t)n * sizeof *copy);
+    qc__free(o->stretch);
+    o->stretch = copy;
+    sizing->stretch = copy;
     return QC_OK;
 }

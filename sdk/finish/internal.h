@@ -63,23 +63,33 @@ typedef struct qc__spot {
     double arc; /* on a curve: place along it */
 } qc__spot;
 
+/* Of a rectangle with edges in the ratio e^{2r}: tanh(2r), 1 / cosh(2r), and half a diagonal over
+ * the mean of its edges. */
+typedef struct qc__rectangle {
+    double skew, turn, half;
+} qc__rectangle;
+
 enum { QC__FREE = -1, QC__FIXED = -2 }; /* anchor of a vertex which is on no curve */
 
 typedef struct qc__relaxation {
     const qc_mesh *mesh;
     const qc_polygon_mesh *quads; /* of which only the faces are read */
     double quality, uniformity;
+    bool rectangles;
     const qc_closest_point *closest;
     qc_closest_tree *tree;
     qc__neighbours around;
     qc__curves curves;
-    double *normal;   /* 3 n_faces of the mesh */
-    double *position; /* 3 n_vertices, spot.x of every vertex */
-    qc__spot *spot;   /* n_vertices; x not used */
-    int32_t *anchor;  /* n_vertices: curve it slides on, QC__FREE or QC__FIXED */
-    double *size;     /* n_faces: edge length of the quads about each quad */
-    double *scratch;  /* n_faces */
-    uint8_t *pinned;  /* n_vertices: 1 next to the largest gaps between quads and surface */
+    double *normal;           /* 3 n_faces of the mesh */
+    double *position;         /* 3 n_vertices, spot.x of every vertex */
+    qc__spot *spot;           /* n_vertices; x not used */
+    int32_t *anchor;          /* n_vertices: curve it slides on, QC__FREE or QC__FIXED */
+    double *size;             /* n_faces: edge length of the quads about each quad */
+    double *ratio;            /* n_faces: half the logarithm of that of the edges 0 1 and 1 2 of the
+                                 rectangle wanted, 0 = a square */
+    qc__rectangle *rectangle; /* n_faces: of that ratio */
+    double *scratch;          /* n_faces */
+    uint8_t *pinned;          /* n_vertices: 1 next to the largest gaps between quads and surface */
 } qc__relaxation;
 
 /* Which vertices slide on which curve. */
@@ -88,13 +98,14 @@ qc_status qc__find_anchors(qc_ctx *ctx, qc__relaxation *r);
 /* Largest distance of each quad to the surface, and of the surface to it; gap: n_faces. */
 qc_status qc__measure_gaps(qc_ctx *ctx, const qc__relaxation *r, double *gap);
 
-/* r->size: mean edge lengths, averaged over neighbours a few times. */
+/* r->size: mean edge lengths, averaged over neighbours a few times; r->ratio, with r->rectangles,
+ * likewise. */
 void qc__measure_sizes(qc_ctx *ctx, qc__relaxation *r);
 /* The size of the first quad at v. */
 static inline double qc__size_at(const qc__relaxation *r, int32_t v) {
     return r->size[r->around.face[r->around.face_start[v]] / 4];
 }
-/* Mean of the places which the squares closest to its quads give a vertex. */
+/* Mean of the places which the squares (rectangles) closest to its quads give a vertex. */
 void qc__square_target(const qc__relaxation *r, int32_t v, double target[3]);
 
 /* Least scaled Jacobian of the quads at v, were v at x. Thread: any, nothing is written. */

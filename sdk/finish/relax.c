@@ -1,4 +1,5 @@
-/* qc_quads_relax: squares by a local-global method on the surface (stages/finish/finish.md). */
+/* qc_quads_relax: squares, or rectangles, by a local-global method on the surface
+ * (stages/finish/finish.md). */
 #include <string.h>
 
 #include "sdk/finish/internal.h"
@@ -51,10 +52,12 @@ static qc_status prepare(qc_ctx *ctx, const uint8_t *feature, qc__relaxation *r)
     r->spot = QC__NEW(ctx, qc__spot, n);
     r->anchor = QC__NEW(ctx, int32_t, n);
     r->size = QC__NEW(ctx, double, n_faces);
+    r->ratio = QC__NEW(ctx, double, n_faces);
+    r->rectangle = QC__NEW(ctx, qc__rectangle, n_faces);
     r->scratch = QC__NEW(ctx, double, n_faces);
     r->pinned = QC__ZERO(ctx, uint8_t, n);
-    if (!r->normal || !r->position || !r->spot || !r->anchor || !r->size || !r->scratch ||
-        !r->pinned)
+    if (!r->normal || !r->position || !r->spot || !r->anchor || !r->size || !r->ratio ||
+        !r->rectangle || !r->scratch || !r->pinned)
         return QC_ERR_NOMEM;
     memcpy(r->position, r->quads->position, (size_t)(3 * n) * sizeof *r->position);
     qc_status status = qc_mesh_geometry(ctx, m, NULL, NULL, NULL, NULL, r->normal, NULL);
@@ -78,6 +81,8 @@ static void clear(qc__relaxation *r) {
     qc__free(r->spot);
     qc__free(r->anchor);
     qc__free(r->size);
+    qc__free(r->ratio);
+    qc__free(r->rectangle);
     qc__free(r->scratch);
     qc__free(r->pinned);
 }
@@ -197,6 +202,7 @@ qc_status qc_quads_relax(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh
                         .quads = quads,
                         .quality = o.quality,
                         .uniformity = o.uniformity,
+                        .rectangles = o.rectangles,
                         .closest = o.closest ? o.closest : &qc_closest_point_builtin};
     qc_status status = check(ctx, mesh, quads);
     if (status == QC_OK) status = prepare(ctx, o.feature, &r);

@@ -39,6 +39,7 @@ static void flip_state(qc_distortion *d, qc_flip_step flip, qc__coupling *coupli
     for (int32_t i = 0; i < coupling->n; i++)
         add_entry(&d->matrix->A, coupling->k, coupling->row[i], coupling->d[i]);
     d->side[coupling->k].in_t = qc__flip_side(d, flip);
+    if (d->odd) d->odd[coupling->k] = !d->odd[coupling->k];
     if (!qc__face_is_fixed(d, s)) d->bend[s] += bend;
     if (!qc__face_is_fixed(d, t)) d->bend[t] -= bend;
     step_matching(d, flip);

@@ -29,7 +29,8 @@ static bool allocate_unknowns(qc_ctx *ctx, qc_distortion *d) {
     d->curl = QC__NEW(ctx, qc_complex, n * QC__TRIALS);
     d->reach = QC__NEW(ctx, int32_t, 2 * n);
     d->sparse = QC__NEW(ctx, qc_complex, 2 * n);
-    return d->side && d->r && d->curl && d->reach && d->sparse;
+    if (d->stretch) d->odd = QC__ZERO(ctx, uint8_t, n);
+    return d->side && d->r && d->curl && d->reach && d->sparse && (d->odd || !d->stretch);
 }
 
 static double length_in(const qc_sizing *sizing, int32_t t) {
@@ -43,8 +44,10 @@ static void copy_start(qc_distortion *d, const qc_sizing *sizing) {
     memcpy(d->x, d->start->field->x, (size_t)mesh->n_faces * sizeof *d->x);
     d->branch_points = d->start->n_singular;
     d->whole = 0;
-    for (int32_t t = 0; t < mesh->n_faces; t++)
-        d->whole += d->smoother.c.area[t] / (length_in(sizing, t) * length_in(sizing, t));
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        const double unit = d->smoother.c.area[t] / (length_in(sizing, t) * length_in(sizing, t));
+        d->whole += d->stretch ? unit * cosh(2 * qc__stretch_along(d->stretch[t], d->x[t])) : unit;
+    }
 }
 
 static void fill_sides(qc_distortion *d, const qc_sizing *sizing) {
@@ -58,6 +61,7 @@ static void fill_sides(qc_distortion *d, const qc_sizing *sizing) {
             qc_quarter_turn(qc__z(qc__c(d->smoother.c.edge[g]) / length_in(sizing, g / 3)),
                             d->m[e])};
         d->side[i] = side;
+        if (d->odd) d->odd[i] = d->m[e] % 2 != 0;
     }
 }
 
@@ -133,6 +137,10 @@ qc_status qc_distortion_create(qc_ctx *ctx, const qc_matching *matching, const q
     if (!d) return QC_ERR_NOMEM;
     d->start = qc_object_retain(matching);
     d->mesh = matching->field->mesh;
+    if (sizing) {
+        d->sizing = qc_object_retain(sizing);
+        d->stretch = sizing->stretch;
+    }
     qc_status status = allocate(ctx, d) ? prepare(ctx, d, sizing, lambda) : QC_ERR_NOMEM;
     if (!status) status = first_energy(ctx, d);
     if (status) {
@@ -154,12 +162,13 @@ void qc_distortion_free(qc_distortion *d) {
     if (!d) return;
     void *const blocks[] = {d->cotangent, d->side,   d->m,      d->index4, d->bend, d->alpha,
                             d->x,         d->angle,  d->turned, d->r,      d->curl, d->reach,
-                            d->sparse,    d->frozen, d->hard,   d->known};
+                            d->sparse,    d->frozen, d->hard,   d->known,  d->odd};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     qc__smoother_free(&d->smoother);
     qc_stiffness_free(d->matrix);
     qc_factor_free(d->factor);
     qc_object_release(d->start);
+    qc_object_release(d->sizing);
     qc__free(d);
 }
 

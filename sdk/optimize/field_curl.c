@@ -49,7 +49,23 @@ qc_complex qc__flip_side(const qc_distortion *d, qc_flip_step flip) {
     return qc_quarter_turn(d->side[d->matrix->unknown[flip.edge]].in_t, flip.step);
 }
 
+/* The same with lengths which depend on the direction; what is turned is the value of t, after the
+ * stretching. */
+static void stretched_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step flip,
+                           qc_complex *r) {
+    const int32_t flipped = flip.edge < 0 ? -1 : d->matrix->unknown[flip.edge];
+    for (int32_t i = 0; i < d->n; i++) {
+        const qc_complex t = qc__z(qc__side_in_t(d, i, x[d->side[i].t]));
+        r[i] = qc__z(qc__side_in_s(d, i, x[d->side[i].s]) +
+                     qc__c(i == flipped ? qc_quarter_turn(t, flip.step) : t));
+    }
+}
+
 void qc__weak_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step flip, qc_complex *r) {
+    if (d->stretch) {
+        stretched_curl(d, x, flip, r);
+        return;
+    }
     for (int32_t i = 0; i < d->n; i++) r[i] = curl_at(&d->side[i], x);
     if (flip.edge < 0) return;
     const int32_t i = d->matrix->unknown[flip.edge];

@@ -5,9 +5,11 @@
 #include <qc/optimize.h>
 
 #include "sdk/field/internal.h"
+#include "sdk/field/stretch.h"
 
 /* What the weak curl at an edge needs: its faces, and its vector in each, divided by the length
- * there; that of t times i^m, so that r_e = conj(x_s) in_s + conj(x_t) in_t. */
+ * there; that of t times i^m, so that r_e = conj(x_s) in_s + conj(x_t) in_t where lengths do not
+ * depend on the direction. */
 typedef struct qc__side {
     int32_t s, t;
     qc_complex in_s, in_t;
@@ -26,13 +28,16 @@ struct qc_distortion {
     const qc_matching *start; /* retained */
     const qc_mesh *mesh;
     qc__smoother smoother;
-    double *cotangent;    /* 3 n_faces                                                         */
-    qc__side *side;       /* n: the two sides of the edge of each unknown */
-    int8_t *m;            /* n_edges                                                           */
-    int32_t *index4;      /* n_vertices                                                        */
-    double *bend;         /* n_faces: right-hand side of the smoothing since the start         */
-    double *alpha;        /* n_faces: the rotations it causes                                  */
-    qc_complex *x;        /* n_faces: the field                                                */
+    double *cotangent; /* 3 n_faces                                                         */
+    qc__side *side;    /* n: the two sides of the edge of each unknown */
+    const qc_complex *stretch; /* n_faces, of the sizing, retained; NULL = none */
+    const qc_sizing *sizing;   /* retained with it */
+    uint8_t *odd;    /* n, with stretch: 1 where m is odd, so that i^m swaps the lengths of t */
+    int8_t *m;       /* n_edges                                                           */
+    int32_t *index4; /* n_vertices                                                        */
+    double *bend;    /* n_faces: right-hand side of the smoothing since the start         */
+    double *alpha;   /* n_faces: the rotations it causes                                  */
+    qc_complex *x;   /* n_faces: the field                                                */
     qc_stiffness *matrix; /* L*, values kept up to date                                        */
     int32_t n;            /* its size                                                          */
     uint8_t *frozen;      /* n_components: closed with trivial holonomy at the start           */
@@ -67,6 +72,37 @@ void qc__rotate_field(int32_t n, const double *angle, const qc_complex *x, qc_co
 void qc__weak_curl(const qc_distortion *d, const qc_complex *x, qc_flip_step flip, qc_complex *r);
 /* The side in t of the edge of the flip after m += step. */
 qc_complex qc__flip_side(const qc_distortion *d, qc_flip_step flip);
+/* With stretch: the part of r_e of an edge vector `in` in a face with cross x; odd: i^m swaps the
+ * lengths. *slope (may be NULL): its derivative by the angle of x. */
+static inline qc__cplx qc__side_value(qc_complex stretch, bool odd, qc_complex in, qc_complex x,
+                                      qc__cplx *slope) {
+    const qc__cplx z = conj(qc__c(x)) * qc__c(in);
+    const qc__cplx along = (odd ? -1 : 1) * qc__c(stretch) * conj(qc__c(x)) * conj(qc__c(x));
+    const qc_complex value = qc__stretched(qc__z(z), creal(along));
+    if (slope) {
+        const qc_complex turned = qc__stretched(qc__z(-I * z), creal(along));
+        const double change = 2 * cimag(along); /* of the stretch */
+        *slope = turned.re - change * value.re + I * (turned.im + change * value.im);
+    }
+    return qc__c(value);
+}
+/* The two parts of r_i, and their derivatives. */
+static inline qc__cplx qc__side_in_s(const qc_distortion *d, int32_t i, qc_complex x) {
+    return qc__side_value(d->stretch[d->side[i].s], false, d->side[i].in_s, x, NULL);
+}
+static inline qc__cplx qc__side_in_t(const qc_distortion *d, int32_t i, qc_complex x) {
+    return qc__side_value(d->stretch[d->side[i].t], d->odd[i], d->side[i].in_t, x, NULL);
+}
+static inline qc__cplx qc__side_slope_s(const qc_distortion *d, int32_t i, qc_complex x) {
+    qc__cplx slope;
+    qc__side_value(d->stretch[d->side[i].s], false, d->side[i].in_s, x, &slope);
+    return slope;
+}
+static inline qc__cplx qc__side_slope_t(const qc_distortion *d, int32_t i, qc_complex x) {
+    qc__cplx slope;
+    qc__side_value(d->stretch[d->side[i].t], d->odd[i], d->side[i].in_t, x, &slope);
+    return slope;
+}
 /* The right-hand side of the smoothing changes by +-value at the two faces of the edge. */
 double qc__flip_bend(const qc_distortion *d, qc_flip_step flip, int32_t *s, int32_t *t);
 /* Marks the vertices on hard features of the field; hard: n_vertices, 0 before. */

@@ -81,15 +81,31 @@ static double _Complex rotation(double angle) { /* e^{-i angle} for |angle| <= p
     return (1 - z / 2 * (1 - z / 12 * (1 - z / 30))) - I * angle * (1 - z / 6 * (1 - z / 20));
 }
 
-/* r' - r at one edge, and the linear part of that which `slope` already has. */
+/* r' - r at one edge, and the linear part of that which `slope` already has. The faces turn by as
+ * and at, the value in t by `turn` besides. */
+static void stretched_near_edge(const qc_distortion *d, int32_t row, double as, double at,
+                                double _Complex turn, double _Complex *change,
+                                double _Complex *linear) {
+    const qc__side *e = &d->side[row];
+    const qc_complex xs = d->x[e->s], xt = d->x[e->t];
+    const double _Complex s = qc__side_in_s(d, row, qc__z(qc__c(xs) * conj(rotation(as))));
+    const double _Complex t = qc__side_in_t(d, row, qc__z(qc__c(xt) * conj(rotation(at))));
+    *change = s - qc__side_in_s(d, row, xs) + turn * t - qc__side_in_t(d, row, xt);
+    *linear = as * qc__side_slope_s(d, row, xs) + at * qc__side_slope_t(d, row, xt);
+}
+
 static void near_edge(const qc_distortion *d, const patch *p, int32_t row, qc_flip_step flip,
                       double _Complex *change, double _Complex *linear) {
     const qc__side *e = &d->side[row];
     const double as = angle_in(d, p, e->s), at = angle_in(d, p, e->t);
-    const double _Complex s = conj(qc__c(d->x[e->s])) * qc__c(e->in_s);
-    const double _Complex t = conj(qc__c(d->x[e->t])) * qc__c(e->in_t);
     const bool flipped = row == d->matrix->unknown[flip.edge];
     const double _Complex turn = !flipped ? 1.0 : flip.step > 0 ? I : -I;
+    if (d->stretch) {
+        stretched_near_edge(d, row, as, at, turn, change, linear);
+        return;
+    }
+    const double _Complex s = conj(qc__c(d->x[e->s])) * qc__c(e->in_s);
+    const double _Complex t = conj(qc__c(d->x[e->t])) * qc__c(e->in_t);
     *change = s * (rotation(as) - 1) + t * (turn * rotation(at) - 1);
     *linear = -I * (s * as + t * at);
 }
@@ -138,6 +154,11 @@ qc_status qc__prepare_slope(qc_ctx *ctx, const qc_distortion *d, const qc_comple
     for (int32_t i = 0; i < d->n; i++) {
         const qc__side *e = &d->side[i];
         const double _Complex w = conj(qc__c(v[i]));
+        if (d->stretch) {
+            slope[e->s] += creal(w * qc__side_slope_s(d, i, d->x[e->s]));
+            slope[e->t] += creal(w * qc__side_slope_t(d, i, d->x[e->t]));
+            continue;
+        }
         slope[e->s] += cimag(w * conj(qc__c(d->x[e->s])) * qc__c(e->in_s));
         slope[e->t] += cimag(w * conj(qc__c(d->x[e->t])) * qc__c(e->in_t));
     }

@@ -8,7 +8,7 @@
 
 typedef struct params {
     int32_t estimator, weight;
-    double radius, trusted, feature_weight;
+    double radius, trusted, feature_weight, stretch_weight;
     bool extend;
 } params;
 
@@ -32,11 +32,14 @@ static qc_status compute(const qc_run *run, const params *given, work *w) {
     qc_ctx *ctx = run->ctx;
     const qc_mesh *mesh = run->input(run, "mesh");
     const qc_features *features = run->input(run, "features");
-    double radius = disk_radius(mesh, run->input(run, "sizing"), given->radius);
+    const qc_sizing *sizing = run->input(run, "sizing");
+    double radius = disk_radius(mesh, sizing, given->radius);
     qc_status status = qc_field_curvature(ctx, mesh, given->estimator, radius, w->x, w->kappa);
     if (!status && given->weight == ANISOTROPY) qc_field_anisotropy(mesh, w->kappa, w->weight);
     if (!status && given->weight == STABILITY)
         status = qc_field_stability(ctx, mesh, w->x, w->kappa, w->weight);
+    if (!status && sizing && sizing->mesh == mesh && given->stretch_weight > 0)
+        qc_field_align_stretch(sizing, given->stretch_weight, w->x, w->weight, w->trusted);
     const double strength = features && features->hard ? INFINITY : given->feature_weight;
     if (!status && strength > 0)
         status = qc_field_align(ctx, mesh, features ? features->edge : NULL, strength, w->x,
@@ -74,7 +77,9 @@ static const qc_port inputs[] = {
     {"features", QC_TYPE_FEATURES, QC_PORT_OPTIONAL,
      "edges the field follows; without, the boundary edges"},
     {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL,
-     "length of a quad, the unit of `radius`; without, that of 10000 quads"},
+     "length of a quad, the unit of `radius`; without, that of 10000 quads; and directions in "
+     "which "
+     "edges are to be longer"},
 };
 static const qc_port outputs[] = {
     {"field", QC_TYPE_FACE_FIELD, 0,
@@ -97,6 +102,10 @@ static const qc_param table[] = {
         params, feature_weight, 2, 0, 1e6, "",
         "weight of faces on feature edges, which follow their edge; 0 = ignore features; hard "
         "features are followed exactly"),
+    QC_PARAM_REAL(
+        params, stretch_weight, 2, 0, 1e6, "",
+        "weight of faces where one edge length is to be twice the other, which are trusted "
+        "in these directions; less where the ratio is smaller; 0 = ignore them"),
     QC_PARAM_BOOL(params, extend, true,
                   "transport the trusted directions to the other faces; off: trust every face"),
 };
@@ -117,7 +126,7 @@ const qc_stage qc_stage_field_curvature = {
     3,
     1,
     table,
-    6,
+    sizeof table / sizeof *table,
     sizeof(params),
     curvature,
 };

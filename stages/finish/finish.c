@@ -1,4 +1,5 @@
 /* Stage qc.finish: quads relaxed towards squares on the surface, features and boundary kept. */
+#include <qc/field.h>
 #include <qc/finish.h>
 #include <qc/map.h>
 #include <qc/stages.h>
@@ -28,6 +29,8 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.rounds = (int32_t)p->rounds;
     options.quality = p->quality;
     options.uniformity = p->uniformity;
+    const qc_sizing *sizing = r->input(r, "sizing");
+    options.rectangles = sizing && sizing->stretch;
     options.closest = (const qc_closest_point *)r->find(r, QC_CLOSEST_POINT_ID, p->closest);
     if (!options.closest) return QC_ERR_NOT_FOUND;
     uint8_t *flag = QC__NEW(r->ctx, uint8_t, mesh->n_edges);
@@ -47,6 +50,8 @@ static const qc_port in[] = {
      "edges of that surface which quad edges on them stay on"},
     {"map", QC_TYPE_CORNER_MAP, QC_PORT_OPTIONAL,
      "tells its hard features, which are kept as well"},
+    {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL,
+     "tells whether edge lengths depend on the direction: then quads keep their proportions"},
 };
 static const qc_port out[] = {
     {"quads", QC_TYPE_POLYGON_MESH, 0, "the same quads, with new positions and sources"},
@@ -73,7 +78,9 @@ const qc_stage qc_stage_finish = {
            "give it, in the tangent plane, and from there to the closest point of the surface. "
            "Vertices on the boundary and on features slide along their curve; corners stay. A step "
            "which would turn a quad over, or make it worse than `quality`, is halved or not made. "
-           "Then the vertices of quads which are still worse are searched a better place. Source "
+           "Then the vertices of quads which are still worse are searched a better place. Where "
+           "edge lengths depend on the direction, rectangles of the proportions around take the "
+           "place of squares. Source "
            "faces and barycentric coordinates are those of the new places.",
     .cite = "Bouaziz et al., Shape-Up (2012); Freitag and Ollivier-Gooch (1997)",
     .in = in,

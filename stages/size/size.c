@@ -6,7 +6,7 @@
 
 typedef struct params {
     double quads, edge_length, edge_length_rel;
-    double turn, range, gradation;
+    double turn, range, gradation, anisotropy;
     bool painted;
     const char *file;
 } params;
@@ -28,12 +28,13 @@ static qc_status size(const qc_run *run, const void *p) {
     }
     qc_sizing *out = NULL;
     qc_status status;
-    if (given->turn > 0 || given->painted || given->file) {
+    if (given->turn > 0 || given->painted || given->file || given->anisotropy > 1) {
         qc_size_options options = QC_SIZE_OPTIONS_INIT;
         options.edge_length = length;
         options.turn = given->turn * PI / 180;
         options.range = given->range;
         options.gradation = given->gradation;
+        options.anisotropy = given->anisotropy;
         options.painted = given->painted;
         options.path = given->file;
         options.input = run->input(run, "input");
@@ -66,10 +67,15 @@ static const qc_param table[] = {
                   "factor by which curvature and paint change the length at most"),
     QC_PARAM_REAL(params, gradation, 0.25, 0, 10, "",
                   "lengths grow by at most this times the way on the surface; 0 = no limit"),
+    QC_PARAM_REAL(
+        params, anisotropy, 1, 1, 100, "",
+        "edges in the direction of least curvature are longer by at most this factor than "
+        "those across; 1 = as long"),
     QC_PARAM_BOOL(params, painted, false,
                   "the PLY vertex property `quality` multiplies the number of quads on an area"),
     QC_PARAM_TEXT(params, file,
-                  "text file with a length for each vertex, or for each face, of the input"),
+                  "text file with a length for each vertex, or for each face, of the input, or "
+                  "five numbers: a length along a direction, that across, the direction"),
 };
 
 const qc_stage qc_stage_size = {
@@ -80,8 +86,9 @@ const qc_stage qc_stage_size = {
     "The edge length h of a quad is edge_length, else edge_length_rel times the bounding box "
     "diagonal, "
     "else sqrt(area / quads). A length is meant literally; a number of quads is met by later "
-    "stages. turn, painted and file make the length change over the surface; with a number of "
-    "quads all lengths are scaled to ask for that many.",
+    "stages. turn, painted and file make the length change over the surface, anisotropy and file "
+    "with the direction (h is the geometric mean of the two lengths then); with a number of quads "
+    "all lengths are scaled to ask for that many.",
     "docs/files.md",
     inputs,
     outputs,

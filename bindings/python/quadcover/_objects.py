@@ -199,17 +199,28 @@ class Sizing(_OnMesh):
     struct, type = "qc_sizing", "qc.sizing/1"
     edge_length, target_quads = _number("edge_length"), _number("target_quads")
     length = _array("length", "n_faces")
+    stretch = _array("stretch", "n_faces")
 
     @classmethod
-    def create(cls, mesh, edge_length, target_quads=0.0, length=None):
-        """One length everywhere, or one for each face."""
+    def create(cls, mesh, edge_length, target_quads=0.0, length=None, stretch=None):
+        """One length everywhere, or one for each face; with stretch, complex numbers
+        log(a / b) / 2 * d**2, edges along the direction d of each face are longer than those
+        across by the factor a / b, sqrt(a b) being the length."""
         given = None if length is None else np.ascontiguousarray(length, np.float64)
         if given is not None and given.shape != (mesh.n_faces,):
             raise ValueError("length has shape %s; give (%d,)" % (given.shape, mesh.n_faces))
         out = ffi.new("qc_sizing **")
         session().call(lib.qc_sizing_create, mesh._c, edge_length, target_quads,
                        ffi.NULL if given is None else ffi.from_buffer("double[]", given), out)
-        return cls(out[0])
+        sizing = cls(out[0])
+        if stretch is not None:
+            stretch = np.ascontiguousarray(stretch, np.complex128)
+            if stretch.shape != (mesh.n_faces,):
+                raise ValueError("stretch has shape %s; give (%d,)"
+                                 % (stretch.shape, mesh.n_faces))
+            session().call(lib.qc_sizing_set_stretch, out[0],
+                           ffi.cast("qc_complex *", ffi.from_buffer(stretch)))
+        return sizing
 
 
 class FaceField(_OnMesh):

@@ -175,6 +175,12 @@ class Arrays(unittest.TestCase):
         self.assertTrue(np.allclose(np.abs(field.x), 1))
         sizing = qc.Sizing.create(mesh, 0.1, length=np.full(mesh.n_faces, 0.1))
         self.assertEqual(sizing.length.shape, (mesh.n_faces,))
+        self.assertIsNone(sizing.stretch)
+        stretch = np.full(mesh.n_faces, 0.5j)
+        sizing = qc.Sizing.create(mesh, 0.1, stretch=stretch)
+        self.assertEqual(sizing.stretch.tolist(), stretch.tolist())
+        with self.assertRaises(ValueError):
+            qc.Sizing.create(mesh, 0.1, stretch=stretch[1:])
 
     def test_repairs_warn(self):
         v, f = square(6)

@@ -23,9 +23,17 @@ typedef struct qc_sizing {
     double target_quads; /* > 0: the number of quads to be met; 0: edge_length is meant literally */
     const double
         *length; /* n_faces, target edge length in each face; NULL = edge_length everywhere  */
+    const qc_complex *stretch; /* optional, n_faces: lengths depend on the direction, see below */
 } qc_sizing;
 QC_API qc_status qc_sizing_create(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
                                   double target_quads, const double *length, qc_sizing **out);
+/* Gives a sizing which is not yet shared two lengths in each face: with stretch[t] = 1/2 log(a/b)
+ * d^2, d a unit complex number in the frame of qc_tangent_edges, edges along d are to have length
+ * a, those across it length b, and `length` is sqrt(a b). A cross x has the lengths h e^s along x
+ * and h e^-s across, s = Re(stretch conj(x)^2): a quarter turn of x swaps them, and the area of a
+ * quad is h^2 whatever x is. Copied. Errors: ARGUMENT (where = face: not finite, or a ratio above
+ * 1e4), NOMEM. */
+QC_API qc_status qc_sizing_set_stretch(qc_ctx *ctx, qc_sizing *sizing, const qc_complex *stretch);
 
 typedef struct qc_size_options {
     uint32_t struct_size;
@@ -35,17 +43,20 @@ typedef struct qc_size_options {
     double range;       /* factor, >= 1, by which curvature and paint change a length at most   */
     double gradation; /* lengths grow by at most this times the way on the surface; 0 = no limit */
     bool painted;     /* input->quality multiplies the number of quads on an area             */
-    const char
-        *path; /* text: a length for each vertex, or for each face, of the input; NULL = none */
+    const char *path; /* text: a length for each vertex, or for each face, of the input, or five
+                         numbers: a length along a direction, that across, the direction; NULL =
+                         none */
     const qc_polygon_mesh
-        *input; /* which the mesh's source numbers count; NULL = the mesh itself */
+        *input;        /* which the mesh's source numbers count; NULL = the mesh itself */
+    double anisotropy; /* >= 1: the most by which edges in the direction of least curvature are
+                          longer than those across */
 } qc_size_options;
 #define QC_SIZE_OPTIONS_INIT                                                                       \
-    { sizeof(qc_size_options), 0, 0, 4, 0.25, false, NULL, NULL }
-/* A sizing whose length changes over the surface. With target_quads > 0 all lengths are scaled to
- * ask for that many. Errors: ARGUMENT (a number out of range, no paint), IO, INPUT (where = line:
- * not a positive number; a number of lengths which fits neither vertices nor faces), NOMEM,
- * CANCELLED. */
+    { sizeof(qc_size_options), 0, 0, 4, 0.25, false, NULL, NULL, 1 }
+/* A sizing whose length changes over the surface or depends on the direction
+ * (stages/size/size.md). With target_quads > 0 all lengths are scaled to ask for that many. Errors:
+ * ARGUMENT (a number out of range, no paint), IO, INPUT (where = line: not a positive number, no
+ * direction; a number of lengths which fits neither vertices nor faces), NOMEM, CANCELLED. */
 QC_API qc_status qc_sizing_create_varying(qc_ctx *ctx, const qc_mesh *mesh, double target_quads,
                                           const qc_size_options *options, qc_sizing **out);
 
@@ -107,6 +118,11 @@ QC_API void qc_field_anisotropy(const qc_mesh *mesh, const double *kappa, double
  * first (qc_features_split). */
 QC_API qc_status qc_field_align(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                 double strength, qc_complex *x, double *weight, uint8_t *trusted);
+/* Turns the cross of each face whose lengths depend on the direction, by a ratio of 1.1 and more,
+ * to these directions, trusts it and raises its weight to strength log2(ratio), at most
+ * `strength`. x, weight, trusted (n_faces each) are changed in place at these faces. */
+QC_API void qc_field_align_stretch(const qc_sizing *sizing, double strength, qc_complex *x,
+                                   double *weight, uint8_t *trusted);
 /* A copy of a given field with hard features: of the flagged edges (n_edges) those whose chain
  * (qc_features_chains) the field follows within `tolerance` (radians) on nine tenths of its length;
  * the crosses beside them are turned the rest of the way. How many chains were left out is a

@@ -19,17 +19,19 @@ typedef struct qc_relax_options {
     const uint8_t *feature; /* edges of the mesh (n_edges flags, borrowed) which quad edges on them
                                are to stay on; NULL = none. The boundary always counts */
     const qc_closest_point *closest; /* borrowed; NULL = builtin */
+    bool rectangles; /* towards rectangles of the proportions of the quads around; false: squares */
 } qc_relax_options;
 #define QC_RELAX_OPTIONS_INIT                                                                      \
-    { sizeof(qc_relax_options), 10, 0.6, 1.0, NULL, NULL }
+    { sizeof(qc_relax_options), 10, 0.6, 1.0, NULL, NULL, false }
 
-/* Moves the vertices of quads towards squares and keeps them on the surface: inner vertices are
- * projected to the closest point, those on the boundary and on features slide along their curve,
- * its ends and corners stay. No quad becomes worse than min(its start, quality), so none is turned
- * over; then the neighbours of the worst quads are moved where that makes the worst better.
- * Quads and their order stay; positions, source faces and barycentric coordinates (of `mesh`) are
- * new. Without sources the closest points of the vertices are taken. Errors: ARGUMENT (a face which
- * is no quad, a source which is no face of the mesh), NOMEM, CANCELLED, those of `closest`. */
+/* Moves the vertices of quads towards squares (rectangles) and keeps them on the surface: inner
+ * vertices are projected to the closest point, those on the boundary and on features slide along
+ * their curve, its ends and corners stay. No quad becomes worse than min(its start, quality), so
+ * none is turned over; then the neighbours of the worst quads are moved where that makes the worst
+ * better. Quads and their order stay; positions, source faces and barycentric coordinates (of
+ * `mesh`) are new. Without sources the closest points of the vertices are taken. Errors: ARGUMENT
+ * (a face which is no quad, a source which is no face of the mesh), NOMEM, CANCELLED, those of
+ * `closest`. */
 QC_API qc_status qc_quads_relax(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh *quads,
                                 const qc_relax_options *options, qc_polygon_mesh **out);
 

@@ -4,7 +4,8 @@
 
 #include <qc/map.h>
 
-/* z = conj(x) e / length in each face, in its gauge: 3 n_faces. Errors: NOMEM. */
+/* z = <X, e> / h_u + i <Y, e> / h_v in each face, in its gauge: 3 n_faces; conj(x) e / length where
+ * the lengths do not depend on the direction. Errors: NOMEM. */
 qc_status qc__frame_form(qc_ctx *ctx, const qc_matching *matching, const qc_sizing *sizing,
                          qc_complex *z);
 

@@ -71,7 +71,7 @@ static void cubes_get_their_field(void **state) {
 }
 
 typedef struct size_params {
-    double quads, edge_length, edge_length_rel, turn, range, gradation;
+    double quads, edge_length, edge_length_rel, turn, range, gradation, anisotropy;
     bool painted;
     const char *file;
 } size_params;
@@ -82,10 +82,10 @@ static void sizes_have_a_precedence(void **state) {
         size_params params;
         double length, quads;
     } cases[] = {
-        {{0, 0, 0, 0, 4, 0.25, false, NULL}, 0.01, 10000},
-        {{400, 0, 0, 0, 4, 0.25, false, NULL}, 0.05, 400},
-        {{400, 0, 0.1, 0, 4, 0.25, false, NULL}, 0.1 * 1.4142135623730951, 0},
-        {{400, 0.2, 0.1, 0, 4, 0.25, false, NULL}, 0.2, 0},
+        {{0, 0, 0, 0, 4, 0.25, 1, false, NULL}, 0.01, 10000},
+        {{400, 0, 0, 0, 4, 0.25, 1, false, NULL}, 0.05, 400},
+        {{400, 0, 0.1, 0, 4, 0.25, 1, false, NULL}, 0.1 * 1.4142135623730951, 0},
+        {{400, 0.2, 0.1, 0, 4, 0.25, 1, false, NULL}, 0.2, 0},
     };
     qc_mesh *mesh = grid(ctx, PLANE, 4, 4, 1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

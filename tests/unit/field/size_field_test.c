@@ -143,6 +143,148 @@ static void paint_multiplies_the_density(void **state) {
     qc_object_release(in);
 }
 
+/* --- two lengths ------------------------------------------------------------------------------ */
+
+/* The ratio of the length along d to that across in face t, and how far it is from stretched along
+ * d or across (radians of the double angle). */
+static double ratio_along(qc_ctx *ctx, const qc_sizing *s, int32_t t, const double d[3],
+                          double *off) {
+    const size_t n = 3 * (size_t)s->mesh->n_faces;
+    double *real = malloc(n * sizeof *real), *imag = malloc(n * sizeof *imag);
+    assert_int_equal(qc_tangent_frames(ctx, s->mesh, real, imag), QC_OK);
+    double re = 0, im = 0;
+    for (int k = 0; k < 3; k++) {
+        re += d[k] * real[3 * t + k];
+        im += d[k] * imag[3 * t + k];
+    }
+    const double angle = 2 * atan2(im, re);
+    const double along = s->stretch[t].re * cos(angle) + s->stretch[t].im * sin(angle);
+    *off = fabs(s->stretch[t].im * cos(angle) - s->stretch[t].re * sin(angle));
+    free(real);
+    free(imag);
+    return exp(2 * along);
+}
+
+/* A cylinder bends about its axis, along which edges are long; a plane bends nowhere. */
+static void edges_are_long_where_curvature_is_least(void **state) {
+    static const double axis[3] = {0, 0, 1};
+    for (int i = 0; i < 3; i++) {
+        static const double scale[] = {1, 1e-6, 1e6};
+        qc_mesh *m = grid(*state, 40, 8, 1, scale[i]);
+        qc_size_options o = QC_SIZE_OPTIONS_INIT;
+        o.edge_length = 0.2 * scale[i];
+        o.anisotropy = 2;
+        qc_sizing *s = make(*state, m, 300, &o);
+        assert_near(quads_asked_for(*state, s), 300, 1e-6);
+        for (int32_t t = 0; t < m->n_faces; t += 7) {
+            double off;
+            assert_near(ratio_along(*state, s, t, axis, &off), 2, 0.05);
+            assert_near(off, 0, 0.02);
+        }
+        qc_object_release(s);
+        qc_object_release(m);
+    }
+    qc_mesh *m = grid(*state, 8, 8, 0, 1);
+    qc_size_options o = QC_SIZE_OPTIONS_INIT;
+    o.edge_length = 0.2;
+    o.anisotropy = 2;
+    qc_sizing *s = make(*state, m, 0, &o);
+    for (int32_t t = 0; t < m->n_faces; t++)
+        assert_near(hypot(s->stretch[t].re, s->stretch[t].im), 0, 1e-12);
+    qc_object_release(s);
+    qc_object_release(m);
+}
+
+/* Both lengths of a bent surface are short enough, the one across by the ratio shorter. */
+static void two_lengths_turn_by_little(void **state) {
+    qc_mesh *m = grid(*state, 40, 8, 1, 1);
+    qc_size_options o = QC_SIZE_OPTIONS_INIT;
+    o.edge_length = 1;
+    o.turn = 0.3;
+    o.anisotropy = 4;
+    qc_sizing *s = make(*state, m, 0, &o);
+    for (int32_t t = 0; t < m->n_faces; t++) {
+        const double across =
+            s->length[t] * exp(-hypot(s->stretch[t].re, s->stretch[t].im)); /* about the axis */
+        assert_near(across, 0.3, 0.02);
+    }
+    qc_object_release(s);
+    qc_object_release(m);
+}
+
+/* The same tensor by vertex, by face, and with its two lengths named the other way round; the split
+ * of a mesh keeps it in space. */
+static void files_give_two_lengths(void **state) {
+    static const char path[] = "size_field_test_two.txt";
+    static const double d[3] = {0.6, 0.8, 0};
+    static const char *const rows[] = {"0.2 0.1 0.6 0.8 0\n", "0.1 0.2 -8 6 0\n"};
+    qc_mesh *m = grid(*state, 6, 5, 0, 1);
+    for (int by_face = 0; by_face < 2; by_face++)
+        for (int i = 0; i < 2; i++) {
+            FILE *f = fopen(path, "w");
+            assert_non_null(f);
+            for (int32_t k = 0; k < (by_face ? m->n_faces : m->n_vertices); k++) fputs(rows[i], f);
+            fclose(f);
+            qc_size_options o = QC_SIZE_OPTIONS_INIT;
+            o.edge_length = 1;
+            o.path = path;
+            qc_sizing *s = make(*state, m, 0, &o), *split = NULL;
+            qc_features *features = NULL, *finer = NULL;
+            qc_mesh *refined = NULL;
+            uint8_t *edge = malloc((size_t)m->n_edges);
+            memset(edge, 1, (size_t)m->n_edges);
+            assert_int_equal(qc_features_create(*state, m, edge, true, &features), QC_OK);
+            assert_int_equal(qc_features_split(*state, features, s, &refined, &finer, &split),
+                             QC_OK);
+            assert_true(refined->n_faces > m->n_faces);
+            for (int32_t t = 0; t < refined->n_faces; t++) {
+                double off;
+                assert_near(ratio_along(*state, split, t, d, &off), 2, 1e-9);
+                assert_near(off, 0, 1e-9);
+                assert_near(split->length[t], sqrt(0.02), 1e-12);
+            }
+            free(edge);
+            qc_object_release(features);
+            qc_object_release(finer);
+            qc_object_release(refined);
+            qc_object_release(split);
+            qc_object_release(s);
+        }
+    qc_object_release(m);
+    unlink(path);
+}
+
+static void wrong_directions_are_refused(void **state) {
+    static const char path[] = "size_field_test_direction.txt";
+    static const struct {
+        const char *row;
+        qc_status status;
+    } cases[] = {{"1 2 0 0 0\n", QC_ERR_INPUT},
+                 {"1 -2 1 0 0\n", QC_ERR_INPUT},
+                 {"0 2 1 0 0\n", QC_ERR_INPUT},
+                 {"1 1e5 1 0 0\n", QC_ERR_ARGUMENT}};
+    qc_mesh *m = grid(*state, 2, 2, 0, 1);
+    qc_size_options o = QC_SIZE_OPTIONS_INIT;
+    o.edge_length = 1;
+    o.path = path;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        qc_sizing *s = NULL;
+        FILE *f = fopen(path, "w");
+        assert_non_null(f);
+        for (int32_t k = 0; k < m->n_faces; k++) fputs(k == 3 ? cases[i].row : "1 2 1 0 0\n", f);
+        fclose(f);
+        assert_int_equal(qc_sizing_create_varying(*state, m, 0, &o, &s), cases[i].status);
+        assert_int_equal(qc_ctx_error(*state)->where, cases[i].status == QC_ERR_INPUT ? 4 : 3);
+        assert_null(s);
+    }
+    unlink(path);
+    o.path = NULL;
+    o.anisotropy = 0.5;
+    qc_sizing *s = NULL;
+    assert_int_equal(qc_sizing_create_varying(*state, m, 0, &o, &s), QC_ERR_ARGUMENT);
+    qc_object_release(m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plane_surfaces_keep_their_length),
@@ -150,6 +292,10 @@ int main(void) {
         cmocka_unit_test(lengths_grow_slowly),
         cmocka_unit_test(wrong_files_are_refused),
         cmocka_unit_test(paint_multiplies_the_density),
+        cmocka_unit_test(edges_are_long_where_curvature_is_least),
+        cmocka_unit_test(two_lengths_turn_by_little),
+        cmocka_unit_test(files_give_two_lengths),
+        cmocka_unit_test(wrong_directions_are_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -31,6 +31,46 @@ static void quads_become_squares(void **state) {
     qc_object_release(m);
 }
 
+/* Greatest deviation of the ratio of the two mean edges of a quad from that of all. */
+static double uneven(const qc_polygon_mesh *q) {
+    double mean = 0, most = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t f = 0; f < q->n_faces; f++) {
+            double sum[2] = {0, 0};
+            for (int k = 0; k < 4; k++) {
+                const double *a = q->position + 3 * q->face_vertex[4 * f + k];
+                const double *b = q->position + 3 * q->face_vertex[4 * f + (k + 1) % 4];
+                sum[k & 1] += hypot(a[0] - b[0], a[1] - b[1]);
+            }
+            const double ratio = log(sum[0] / sum[1]);
+            if (pass == 0)
+                mean += ratio / q->n_faces;
+            else
+                most = fmax(most, fabs(ratio - mean));
+        }
+    return most;
+}
+
+/* Three times as long as wide: their corners are nearer to right angles than towards squares. */
+static void proportions_are_kept(void **state) {
+    enum { N = 12 };
+    qc_mesh *m = grid(*state, 9, 9, 0, 1);
+    qc_polygon_mesh *q = quad_grid(*state, N, 0.3, -1, 1), *squares = NULL, *rectangles = NULL;
+    for (int32_t v = 0; v < m->n_vertices; v++) ((double *)(uintptr_t)m->position)[3 * v] *= 3;
+    for (int32_t v = 0; v < q->n_vertices; v++) q->position[3 * v] *= 3;
+    qc_relax_options options = QC_RELAX_OPTIONS_INIT;
+    assert_int_equal(qc_quads_relax(*state, m, q, &options, &squares), QC_OK);
+    options.rectangles = true;
+    assert_int_equal(qc_quads_relax(*state, m, q, &options, &rectangles), QC_OK);
+    check_sources(m, rectangles);
+    assert_true(uneven(rectangles) < 0.1 * uneven(q));
+    assert_true(skewness(rectangles) < 0.75 * skewness(squares));
+    qc_object_release(squares);
+    qc_object_release(rectangles);
+    qc_object_release(q);
+    qc_object_release(m);
+}
+
 /* One vertex far inside the next quad: the quads about it are turned over. */
 static void turned_quads_are_repaired(void **state) {
     qc_mesh *m = grid(*state, 5, 5, 0, 1);
@@ -175,7 +215,7 @@ int main(void) {
         cmocka_unit_test(quads_become_squares),       cmocka_unit_test(turned_quads_are_repaired),
         cmocka_unit_test(no_quad_gets_worse),         cmocka_unit_test(features_are_kept),
         cmocka_unit_test(scale_changes_nothing_else), cmocka_unit_test(threads_change_nothing),
-        cmocka_unit_test(bad_input_is_named),
+        cmocka_unit_test(bad_input_is_named),         cmocka_unit_test(proportions_are_kept),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -2,11 +2,30 @@
  * removal from scratch, refused changes leave no trace. */
 #include "unit/optimize/scratch.h"
 
-/* Trials, changes of one to four flips and refusals, each against scratch now and then. */
-static void random_walk(qc_ctx *ctx, qc_mesh *mesh, bool aligned, bool sized, int steps) {
-    qc_matching *m = smooth_matching(ctx, mesh, aligned);
+#include "sdk/optimize/internal.h"
+
+/* A sizing; with stretch its ratios go up to 2 in random directions. */
+static qc_sizing *sizing_of(qc_ctx *ctx, const qc_mesh *mesh, bool stretched) {
     qc_sizing *sizing = NULL;
-    if (sized) assert_int_equal(qc_sizing_create(ctx, mesh, 0.01, 0, NULL, &sizing), QC_OK);
+    assert_int_equal(qc_sizing_create(ctx, mesh, 0.01, 0, NULL, &sizing), QC_OK);
+    if (!stretched) return sizing;
+    qc_complex *s = malloc(sizeof *s * (size_t)mesh->n_faces);
+    uint64_t seed = 13;
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        const double size = 0.5 * log(2) * uniform(&seed), angle = 2 * PI * uniform(&seed);
+        s[t] = (qc_complex){size * cos(angle), size * sin(angle)};
+    }
+    assert_int_equal(qc_sizing_set_stretch(ctx, sizing, s), QC_OK);
+    free(s);
+    return sizing;
+}
+
+enum { NOT_SIZED, SIZED, STRETCHED };
+
+/* Trials, changes of one to four flips and refusals, each against scratch now and then. */
+static void random_walk(qc_ctx *ctx, qc_mesh *mesh, bool aligned, int sized, int steps) {
+    qc_matching *m = smooth_matching(ctx, mesh, aligned);
+    qc_sizing *sizing = sized ? sizing_of(ctx, mesh, sized == STRETCHED) : NULL;
     qc_distortion *d = NULL;
     assert_int_equal(qc_distortion_create(ctx, m, sizing, 0.5, &d), QC_OK);
     check_energy(ctx, d, sizing);
@@ -37,13 +56,47 @@ static void random_walk(qc_ctx *ctx, qc_mesh *mesh, bool aligned, bool sized, in
 }
 
 static void walks_on_closed_surface(void **state) {
-    random_walk(*state, ellipsoid(*state, 12, 8, 1, 1.3, 2), false, false, 400);
+    random_walk(*state, ellipsoid(*state, 12, 8, 1, 1.3, 2), false, NOT_SIZED, 400);
 }
 static void walks_with_alignment(void **state) {
-    random_walk(*state, ellipsoid(*state, 12, 8, 1, 1.3, 2), true, true, 64);
+    random_walk(*state, ellipsoid(*state, 12, 8, 1, 1.3, 2), true, SIZED, 64);
 }
 static void walks_on_open_surface(void **state) {
-    random_walk(*state, grid(*state, CYLINDER, 12, 8, 1), false, true, 64);
+    random_walk(*state, grid(*state, CYLINDER, 12, 8, 1), false, SIZED, 64);
+}
+static void walks_with_two_lengths(void **state) {
+    random_walk(*state, ellipsoid(*state, 12, 8, 1, 1.3, 2), false, STRETCHED, 128);
+}
+
+/* The derivatives of the parts of the weak curl by the angles of the crosses, against differences.
+ */
+static void slopes_are_derivatives(void **state) {
+    qc_ctx *ctx = *state;
+    const double h = 1e-6;
+    qc_mesh *mesh = ellipsoid(ctx, 12, 8, 1, 1.3, 2);
+    qc_matching *m = smooth_matching(ctx, mesh, false);
+    qc_sizing *sizing = sizing_of(ctx, mesh, true);
+    qc_distortion *d = NULL;
+    assert_int_equal(qc_distortion_create(ctx, m, sizing, 0.5, &d), QC_OK);
+    const qc__cplx turn = cos(h) + I * sin(h);
+    int n_odd = 0;
+    for (int32_t i = 0; i < d->n; i++) {
+        const qc__cplx xs = qc__c(d->x[d->side[i].s]), xt = qc__c(d->x[d->side[i].t]);
+        const qc__cplx by_s =
+            (qc__side_in_s(d, i, qc__z(xs * turn)) - qc__side_in_s(d, i, qc__z(xs / turn))) /
+            (2 * h);
+        const qc__cplx by_t =
+            (qc__side_in_t(d, i, qc__z(xt * turn)) - qc__side_in_t(d, i, qc__z(xt / turn))) /
+            (2 * h);
+        assert_true(cabs(by_s - qc__side_slope_s(d, i, qc__z(xs))) < 1e-6 * cabs(by_s));
+        assert_true(cabs(by_t - qc__side_slope_t(d, i, qc__z(xt))) < 1e-6 * cabs(by_t));
+        n_odd += d->odd[i];
+    }
+    assert_true(n_odd > 0);
+    qc_distortion_free(d);
+    qc_object_release(sizing);
+    qc_object_release(m);
+    qc_object_release(mesh);
 }
 
 /* More flips at once than are worth sweeps: kept and refused. */
@@ -147,6 +200,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(walks_on_closed_surface, set_up, tear_down),
         cmocka_unit_test_setup_teardown(walks_with_alignment, set_up, tear_down),
         cmocka_unit_test_setup_teardown(walks_on_open_surface, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(walks_with_two_lengths, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(slopes_are_derivatives, set_up, tear_down),
         cmocka_unit_test_setup_teardown(changes_many_at_once, set_up, tear_down),
         cmocka_unit_test_setup_teardown(shares_sum_to_energy, set_up, tear_down),
         cmocka_unit_test_setup_teardown(flat_torus_stays, set_up, tear_down),

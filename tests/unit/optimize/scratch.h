@@ -20,6 +20,12 @@ static inline double from_scratch(qc_ctx *ctx, const qc_distortion *d, const qc_
         scale[t] = !sizing ? 1 : 1 / (sizing->length ? sizing->length[t] : sizing->edge_length);
     assert_int_equal(qc_tangent_edges(ctx, mesh, edge), QC_OK);
     assert_int_equal(qc_form_from_cross(ctx, mesh, edge, m->field->x, scale, z), QC_OK);
+    for (size_t h = 0; sizing && sizing->stretch && h < 3 * F; h++) {
+        const qc_complex x = m->field->x[h / 3], s = sizing->stretch[h / 3];
+        const double longer = exp(s.re * (x.re * x.re - x.im * x.im) + s.im * 2 * x.re * x.im);
+        z[h].re /= longer;
+        z[h].im *= longer;
+    }
     assert_int_equal(qc_mesh_geometry(ctx, mesh, NULL, NULL, cotangent, NULL, NULL, NULL), QC_OK);
     const qc_cover cover = {mesh, m->m};
     double energy = -1;
