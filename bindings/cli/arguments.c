@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VALUE_HELP = 1, VALUE_FIRST = 2, MOST_OPTIONS = 40 };
+enum { VALUE_HELP = 1, VALUE_FIRST = 2, MOST_OPTIONS = 64 };
 
 /* popt's table and the texts it allocated. */
 typedef struct storage {
@@ -14,7 +14,8 @@ typedef struct storage {
     char **text;
     const char **list[MOST_OPTIONS]; /* items of CLI_LIST options */
     const char **word;               /* argv with the full command name */
-    int n_texts, n_lists, n_words;
+    cli_given *given;                /* fewer than there are words */
+    int n_texts, n_lists, n_words, n_given;
     char command[64];
 } storage;
 
@@ -82,6 +83,8 @@ static int set_list(const cli_option *o, const char *text, storage *s) {
 }
 
 static int set(const cli_option *o, char *text, storage *s) {
+    const cli_given given = {o, text};
+    s->given[s->n_given++] = given;
     if (o->kind == CLI_FLAG) {
         *(bool *)o->target = true;
         return -1;
@@ -141,15 +144,18 @@ int cli_parse(int argc, const char **argv, const cli_option *options, int min_n,
     memset(out, 0, sizeof *out);
     storage *s = calloc(1, sizeof *s);
     const char **word = calloc((size_t)argc + 1, sizeof *word);
-    if (!s || !word) {
+    cli_given *given = calloc((size_t)argc + 1, sizeof *given);
+    if (!s || !word || !given) {
         free(s);
         free(word);
+        free(given);
         return cli_error(EXIT_FAILED, "out of memory");
     }
     snprintf(s->command, sizeof s->command, "quadcover %s", argv[0]);
     memcpy(word, argv, (size_t)argc * sizeof *word);
     word[0] = s->command;
     s->word = word;
+    s->given = given;
     s->n_words = argc;
     fill_table(options, s->table);
     poptContext context = poptGetContext(NULL, argc, word, s->table, 0);
@@ -160,6 +166,8 @@ int cli_parse(int argc, const char **argv, const cli_option *options, int min_n,
     if (status < 0) {
         out->positional = poptGetArgs(context);
         while (out->positional && out->positional[out->n]) out->n++;
+        out->given = s->given;
+        out->n_given = s->n_given;
         if (out->n < min_n)
             status = cli_error(EXIT_USAGE, "missing argument; usage: quadcover %s %s", argv[0],
                                synopsis);
@@ -179,6 +187,7 @@ void cli_arguments_free(cli_arguments *arguments) {
         for (int i = 0; i < s->n_lists; i++) free(s->list[i]);
         free(s->text);
         free(s->word);
+        free(s->given);
     }
     free(s);
     memset(arguments, 0, sizeof *arguments);

@@ -44,9 +44,15 @@ typedef struct cli_option {
     const char *argument, *doc;
 } cli_option;
 
+typedef struct cli_given {
+    const cli_option *option;
+    const char *text; /* NULL for a flag */
+} cli_given;
+
 typedef struct cli_arguments {
-    int n;
+    int n, n_given;
     const char **positional;
+    const cli_given *given; /* the options in the order of the command line */
     void *context, *memory; /* owned */
 } cli_arguments;
 
@@ -56,6 +62,8 @@ typedef struct cli_arguments {
 int cli_parse(int argc, const char **argv, const cli_option *options, int min_n, int max_n,
               const char *synopsis, const char *about, cli_arguments *out);
 void cli_arguments_free(cli_arguments *arguments);
+/* Does something with a table of options while the variables it sets exist. */
+typedef int cli_options_user(const cli_option *options, void *user);
 
 /* --- sessions: context, progress, interruption --------------------------------------------- */
 
@@ -113,6 +121,8 @@ void cli_session_quiet(cli_session *session);
 /* The exit status for a failed call: interruption and time limit first, then as cli_context_error.
  */
 int cli_session_error(cli_session *session, const char *prefix, int fallback);
+/* Ctrl-C and SIGTERM set what cli_interrupted tells; a second one ends the program. */
+void cli_catch_interrupts(void);
 bool cli_interrupted(void);
 double cli_seconds(void);
 
@@ -171,12 +181,15 @@ cli_figures cli_report_figures(const qc_report *report);
 /* --- commands: argv[0] is the command's name ----------------------------------------------- */
 
 int cli_remesh(int argc, const char **argv);
+/* The options of remesh for a command which passes them on. */
+int cli_remesh_with_options(cli_options_user *use, void *user);
 int cli_extract(int argc, const char **argv);
 int cli_field(int argc, const char **argv);
 int cli_check(int argc, const char **argv);
 int cli_pick(int argc, const char **argv);
 int cli_stages(int argc, const char **argv);
 int cli_shape(int argc, const char **argv);
+int cli_batch(int argc, const char **argv);
 
 /* The registered stages as JSON; free() it. name NULL = all. */
 char *cli_stages_json(qc_registry *registry, const qc_stage *one);

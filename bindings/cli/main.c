@@ -2,12 +2,6 @@
 #include "bindings/cli/cli.h"
 #include <string.h>
 
-static int batch(int argc, const char **argv) {
-    (void)argc;
-    (void)argv;
-    return cli_error(EXIT_USAGE, "not built yet: the command batch; run remesh once per mesh");
-}
-
 static const struct command {
     const char *name;
     int (*run)(int argc, const char **argv);
@@ -20,7 +14,7 @@ static const struct command {
     {"pick", cli_pick, "what rays meet on a surface"},
     {"stages", cli_stages, "the registered stages, their ports and parameters"},
     {"shape", cli_shape, "one of the procedural surfaces"},
-    {"batch", batch, "many meshes (not built yet)"},
+    {"batch", cli_batch, "many meshes, each in a process of its own"},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

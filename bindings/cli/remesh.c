@@ -41,7 +41,8 @@ typedef struct run {
     cli_times times;
 } run;
 
-static int parse(int argc, const char **argv, settings *s, cli_arguments *arguments) {
+/* Hands the table of options, which set *s, to a user. */
+static int with_options(settings *s, cli_options_user *use, void *user) {
     const double huge = 1e300, tiny = 1e-300;
     const cli_option options[] = {
         {"output", 'o', CLI_TEXT, &s->output, 0, 0, NULL, "OUT.obj", "the quad mesh"},
@@ -75,8 +76,26 @@ static int parse(int argc, const char **argv, settings *s, cli_arguments *argume
          "seed of randomised searches"},
         CLI_COMMON_OPTIONS(s->common),
         {NULL, 0, 0, NULL, 0, 0, NULL, NULL, NULL}};
-    const int status = cli_parse(argc, argv, options, 1, 1, synopsis, about, arguments);
-    if (status < 0) s->input = arguments->positional[0];
+    return use(options, user);
+}
+
+int cli_remesh_with_options(cli_options_user *use, void *user) {
+    settings s;
+    memset(&s, 0, sizeof s);
+    return with_options(&s, use, user);
+}
+
+typedef struct parsing {
+    int argc;
+    const char **argv;
+    settings *settings;
+    cli_arguments *arguments;
+} parsing;
+
+static int parse(const cli_option *options, void *user) {
+    parsing *p = user;
+    const int status = cli_parse(p->argc, p->argv, options, 1, 1, synopsis, about, p->arguments);
+    if (status < 0) p->settings->input = p->arguments->positional[0];
     return status;
 }
 
@@ -242,7 +261,8 @@ int cli_remesh(int argc, const char **argv) {
     cli_arguments arguments;
     memset(&s, 0, sizeof s);
     memset(&r, 0, sizeof r);
-    int status = parse(argc, argv, &s, &arguments);
+    parsing p = {argc, argv, &s, &arguments};
+    int status = with_options(&s, parse, &p);
     if (status >= 0) return status;
     status = check_settings(&s);
     if (status == EXIT_DONE && s.report && !(s.command = command_line(argc, argv)))

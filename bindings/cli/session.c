@@ -17,6 +17,15 @@ static void on_signal(int number) {
     interrupted = 1;
 }
 
+void cli_catch_interrupts(void) {
+    struct sigaction action;
+    memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    action.sa_flags = (int)SA_RESETHAND;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+}
+
 bool cli_interrupted(void) {
     return interrupted != 0;
 }
@@ -102,12 +111,7 @@ int cli_session_open(cli_session *session, const cli_common *common) {
     session->progress = common->progress == CLI_PROGRESS_AUTO && !isatty(STDERR_FILENO)
                             ? CLI_PROGRESS_NONE
                             : common->progress;
-    struct sigaction action;
-    memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
-    action.sa_flags = (int)SA_RESETHAND;
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    cli_catch_interrupts();
     qc_ctx_options options = QC_CTX_OPTIONS_INIT;
     options.threads = (uint32_t)common->threads;
     options.progress = on_progress;

@@ -6,7 +6,7 @@ out_says '^quadcover [0-9]*\.[0-9]*\.[0-9]*$'
 out_says '^vector instructions: '
 run 0 --help
 out_says remesh extract field check stages shape batch
-for command in remesh extract field check stages shape; do
+for command in remesh extract field check stages shape batch; do
     run 0 "$command" --help
     out_says "quadcover $command" --help
     [ -s err ] && fail "$command --help wrote to stderr"
@@ -41,7 +41,7 @@ error_says "only one output can go to '-'"
 run 2 remesh in.obj -o out.obj --progress loud
 error_says --progress
 run 2 batch .
-error_says 'not built yet' batch
+error_says "-o OUTDIR"
 
 run 2 remesh in.obj -o out.obj --set round
 error_says step.param=value
