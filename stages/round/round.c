@@ -9,10 +9,12 @@ typedef struct params {
     const char *solver;
     int64_t seed;
     double refine;
+    int32_t quantize;
 } params;
 static const char *const solvers[] = {QC_SOLVER_ID, NULL};
 
 static const char *const lattices[] = {"quads", "integer", "even", NULL};
+static const char *const quantize[] = {"never", "needed", "always", NULL};
 static const char *const starts[] = {"direct", "greedy", NULL};
 
 static const qc_port in[] = {
@@ -40,6 +42,10 @@ static const qc_param table[] = {
         params, refine, 1, 0.01, 100, "",
         "quads wanted, in units of what the sizing asks for; raised by the program where no "
         "map is found"),
+    QC_PARAM_ENUM(
+        params, quantize, QC_QUANTIZE_WHERE_NEEDED, quantize,
+        "take integers for which an injective map is sure to exist: never, where rounding "
+        "cannot keep singularities and features apart, or always"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
@@ -51,6 +57,7 @@ static qc_status run(const qc_run *r, const void *raw) {
     options.tolerance = p->tolerance;
     options.seed = (uint64_t)p->seed;
     options.refine = p->refine;
+    options.quantize = p->quantize;
     options.solver = (const qc_solver *)r->find(r, QC_SOLVER_ID, p->solver);
     if (!options.solver) return QC_ERR_NOT_FOUND;
     qc_corner_map *map = NULL;

@@ -92,6 +92,12 @@ enum {
     QC_LATTICE_INTEGER = 1, /* translations integers, cones may fall on half-integers (4.2.2 a) */
     QC_LATTICE_EVEN = 2 /* translations even integers (4.2.2 b)                                  */
 };
+enum {
+    QC_QUANTIZE_NEVER = 0,
+    QC_QUANTIZE_WHERE_NEEDED =
+        1, /* where rounding parts no cones and features, or winds many wrong */
+    QC_QUANTIZE_ALWAYS = 2
+};
 typedef struct qc_round_options {
     uint32_t struct_size;
     int32_t lattice; /* QC_LATTICE_... */
@@ -102,14 +108,17 @@ typedef struct qc_round_options {
     uint64_t seed;           /* of the lattice search; another one may give other integers */
     int32_t trial;           /* 1: only the energies are of interest; logs no warnings */
     double refine;           /* quads wanted, in units of what the sizing asks for; 0 = 1 */
+    int32_t quantize;        /* QC_QUANTIZE_...: integers for which an injective map exists */
 } qc_round_options;
 #define QC_ROUND_OPTIONS_INIT                                                                      \
-    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02, NULL, 0, 0, 1.0 }
+    { sizeof(qc_round_options), 0, QC_ROUND_GREEDY, 3, 0.02, NULL, 0, 0, 1.0, 1 }
 /* Rounds the periods to a lattice by the period matrix (Sigma trick, 6.3.2) and adds the harmonic
  * map with the missing periods. Hard features of the matching become integer isolines. When the
  * sizing asks for a number of quads the map is rescaled and rounded again until its area meets it,
- * or a larger number (a warning) where no integers keep cones and features apart. Errors: NOMEM,
- * CANCELLED, FAILED, those of the solver. */
+ * or a larger number (a warning) where no integers keep cones and features apart. Quantization
+ * (docs/theory/quantization.md) needs a map before rounding which is positive, QC_LATTICE_QUADS and
+ * no poles; elsewhere `quantize` is without effect. Errors: NOMEM, CANCELLED, FAILED, those of the
+ * solver. */
 QC_API qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
                               const qc_round_options *options, qc_corner_map **out);
 

@@ -52,8 +52,19 @@ qc_status qc__round_unfold(qc__rounding *r);
 /* The rounded map at a scale and its number of quads; unless coarse, keeps it when it beats the
  * best one. */
 qc_status qc__round_try(qc__rounding *r, double scale, double wanted, double *quads);
+/* What comes after the integers are chosen: the harmonic map which closes the gap of r->rounded,
+ * and its number of quads; keeps it as qc__round_try does. found: energies and work of the search,
+ * NULL = unknown. */
+qc_status qc__round_extend(qc__rounding *r, double scale, double wanted,
+                           const qc_lattice_result *found, double *quads);
+/* The same by quantization (docs/theory/quantization.md), which replaces the best map. *done: false
+ * where the aligned map is not positive, so that nothing was changed. */
+qc_status qc__round_quantized(qc__rounding *r, bool *done);
 /* The best map whose number of quads meets what is asked for. */
 qc_status qc__round_meet(qc__rounding *r);
+/* Rotations across edges and features in the charts of the map (n_edges each); axis is left alone
+ * where there are no features. */
+void qc__round_charts(const qc__rounding *r, int8_t *rotation, int8_t *axis);
 qc_status qc__round_publish(qc__rounding *r, qc_corner_map **out);
 
 #endif

@@ -67,7 +67,15 @@ static qc_status meet_refined(qc__rounding *r, double refine) {
  * sqrt(2), up to 8 times as many. */
 qc_status qc__round_meet(qc__rounding *r) {
     const double asked = r->options.refine;
-    qc_status status = meet_density(r);
+    const bool always = r->options.quantize == QC_QUANTIZE_ALWAYS && !r->options.trial;
+    bool quantized = false;
+    qc_status status = always ? qc__round_quantized(r, &quantized) : QC_OK;
+    if (status != QC_OK || quantized) return status;
+    status = meet_density(r);
+    if (status == QC_OK && r->options.quantize == QC_QUANTIZE_WHERE_NEEDED && !r->options.trial &&
+        is_hopeless(r))
+        status = qc__round_quantized(r, &quantized);
+    if (quantized) return status;
     const int32_t pairs = r->best_collisions, wrong = r->best_wrong;
     if (status != QC_OK || r->options.trial || !is_hopeless(r)) return status;
     for (int32_t k = 1; k <= REFINEMENTS && status == QC_OK && is_hopeless(r); k++)

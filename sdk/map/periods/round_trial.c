@@ -63,7 +63,6 @@ static qc_status round_periods(qc__rounding *r, qc_lattice_result *result) {
     } else {
         for (int32_t j = 0; j < n; j++) r->rounded[j] = rint(r->target[j]);
     }
-    for (int32_t j = 0; j < n; j++) r->gap[j] = r->rounded[j] - r->target[j];
     return QC_OK;
 }
 
@@ -104,24 +103,22 @@ static bool is_better(const qc__rounding *r, double miss) {
     return miss < r->best_miss - qc__round_slack;
 }
 
-/* The rounded map at a scale; unless coarse, keeps it when it is nearer to the wanted number of
- * quads. */
-qc_status qc__round_try(qc__rounding *r, double scale, double wanted, double *quads) {
-    qc_lattice_result result = {0};
+qc_status qc__round_extend(qc__rounding *r, double scale, double wanted,
+                           const qc_lattice_result *found, double *quads) {
+    qc_lattice_result result = found ? *found : (qc_lattice_result){0};
     const bool weighted = r->P && r->weight; /* then P measures in another norm */
-    const bool measured = !r->P || weighted;
-    qc_status status = QC_OK;
+    const bool measured = !found || !r->P || weighted;
+    const int32_t n = r->seams->n_free;
     memset(r->correction, 0, sizeof *r->correction * (size_t)r->mesh->n_vertices);
-    if (r->seams->n_free > 0) {
-        double direct = 0;
+    if (n > 0) {
+        qc_status status = QC_OK;
         scale_targets(r, scale);
-        if (weighted) status = energy_of_direct_rounding(r, &direct);
-        if (status == QC_OK) status = round_periods(r, &result);
+        if (measured && r->P) status = energy_of_direct_rounding(r, &result.energy_direct);
+        for (int32_t j = 0; j < n; j++) r->gap[j] = r->rounded[j] - r->target[j];
         if (status == QC_OK) status = solve_gap(r);
-        if (weighted) result.energy_direct = direct;
+        if (status != QC_OK) return status;
     }
-    if (status != QC_OK) return status;
-    if (measured && r->seams->n_free > 0) {
+    if (measured && n > 0) {
         qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
         result.energy = qc__round_energy(r, r->trial);
     }
@@ -147,4 +144,13 @@ qc_status qc__round_try(qc__rounding *r, double scale, double wanted, double *qu
     r->harmonic = result.energy;
     r->harmonic_direct = result.energy_direct;
     return QC_OK;
+}
+
+/* The rounded map at a scale; unless coarse, keeps it when it is nearer to the wanted number of
+ * quads. */
+qc_status qc__round_try(qc__rounding *r, double scale, double wanted, double *quads) {
+    qc_lattice_result result = {0};
+    scale_targets(r, scale);
+    const qc_status status = r->seams->n_free > 0 ? round_periods(r, &result) : QC_OK;
+    return status == QC_OK ? qc__round_extend(r, scale, wanted, &result, quads) : status;
 }

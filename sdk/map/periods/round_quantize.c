@@ -1,0 +1,151 @@
+/* Periods by quantization (docs/theory/quantization.md): the aligned map, made exact, gives
+ * integers for which an injective map exists; the harmonic map with these periods is what rounding
+ * makes of them. */
+#include <math.h>
+#include <string.h>
+
+#include "sdk/map/periods/round.h"
+#include "sdk/map/quantize/exact_map.h"
+
+enum { EXACT_BITS = 40 };                  /* of the values; their sums stay exact in doubles */
+static const double read_tolerance = 1e-3; /* of the integers read from the values */
+static const double noteworthy = 0.1;      /* more quads than asked for */
+
+typedef struct quantizing {
+    qc__rounding *r;
+    int32_t bits;
+    int64_t *uv;    /* 6 n_faces */
+    double *values; /* 6 n_faces */
+    int8_t *rotation, *axis;
+    uint8_t *point;  /* n_vertices */
+    uint8_t *placed; /* n_faces */
+    int32_t *queue;  /* n_faces */
+} quantizing;
+
+static double snapped(double x, int32_t bits) {
+    return ldexp(rint(ldexp(x, bits)), -bits);
+}
+
+/* Periods and unknown coordinates become multiples of 2^-bits; what follows from them does so
+ * exactly, being sums of them with integer coefficients. */
+static void make_exact(quantizing *q) {
+    qc__rounding *r = q->r;
+    const int64_t n = 3 * (int64_t)r->mesh->n_faces;
+    double extent = 1;
+    for (int64_t c = 0; c < n; c++) extent = fmax(extent, hypot(r->f[c].re, r->f[c].im));
+    q->bits = EXACT_BITS - (int32_t)ceil(log2(extent));
+    for (int32_t j = 0; j < r->seams->n_free; j++) r->target[j] = snapped(r->period[j], q->bits);
+    for (int32_t v = 0; v < r->mesh->n_vertices; v++)
+        r->correction[v] = snapped(creal(r->F[v]), q->bits) + I * snapped(cimag(r->F[v]), q->bits);
+    qc__seams_symbol_values(r->seams, r->target, r->symbol);
+    qc__seams_wedge_values(r->seams, r->symbol, r->wedge);
+    qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
+    for (int64_t c = 0; c < n; c++) {
+        q->uv[2 * c] = (int64_t)ldexp(r->trial[c].re, q->bits);
+        q->uv[2 * c + 1] = (int64_t)ldexp(r->trial[c].im, q->bits);
+    }
+}
+
+static void mark_points(quantizing *q) {
+    const qc__rounding *r = q->r;
+    for (int32_t v = 0; v < r->mesh->n_vertices; v++)
+        q->point[v] = r->seams->vertex_cone[v] >= 0 || r->seamless->matching->index4[v] != 0;
+}
+
+/* Shifts the charts of the faces, the first of each part of the cut surface staying, until the
+ * values are continuous off the cut. f: 3 n_faces. */
+static void join_charts(quantizing *q, qc_complex *f) {
+    const qc_mesh *m = q->r->mesh;
+    for (int64_t c = 0; c < 3 * (int64_t)m->n_faces; c++)
+        f[c] = (qc_complex){q->values[2 * c], q->values[2 * c + 1]};
+    memset(q->placed, 0, (size_t)m->n_faces);
+    for (int32_t first = 0; first < m->n_faces; first++) {
+        int32_t n = 0;
+        if (q->placed[first]) continue;
+        q->queue[n++] = first;
+        q->placed[first] = 1;
+        for (int32_t i = 0; i < n; i++)
+            for (int32_t h = 3 * q->queue[i]; h < 3 * q->queue[i] + 3; h++) {
+                const int32_t g = m->twin[h];
+                if (g < 0 || q->r->seams->edge_segment[m->halfedge_edge[h]] >= 0) continue;
+                if (q->placed[g / 3]) continue;
+                const double du = rint(f[qc_next(h)].re - f[qc_prev(g)].re);
+                const double dv = rint(f[qc_next(h)].im - f[qc_prev(g)].im);
+                for (int32_t c = g / 3 * 3; c < g / 3 * 3 + 3; c++) {
+                    f[c].re += du;
+                    f[c].im += dv;
+                }
+                q->placed[g / 3] = 1;
+                q->queue[n++] = g / 3;
+            }
+    }
+}
+
+/* r->rounded from the values. */
+static qc_status read_integers(quantizing *q) {
+    qc__rounding *r = q->r;
+    join_charts(q, r->trial);
+    const qc_status status = qc__seams_read(r->ctx, r->seams, r->trial, r->rounded);
+    for (int32_t j = 0; j < r->seams->n_free && status == QC_OK; j++) {
+        const double integer = rint(r->rounded[j]), off = fabs(r->rounded[j] - integer);
+        if (off > read_tolerance)
+            return qc__fail(r->ctx, QC_ERR_FAILED, -1,
+                            "quantization: period %d is %g off an integer", (int)j, off);
+        r->rounded[j] = integer;
+    }
+    return status;
+}
+
+static void warn_density(const qc__rounding *r, double wanted, double made) {
+    if (wanted > 0 && made > (1 + noteworthy) * wanted)
+        qc__log(r->ctx, QC_LOG_WARNING,
+                "singularities and features are too close for %.0f quads; %.0f are made", wanted,
+                made);
+}
+
+static qc_status quantize(quantizing *q, bool *done) {
+    qc__rounding *r = q->r;
+    const double sized = r->options.refine * r->seamless->sizing->target_quads;
+    const double area = qc__round_area(r->f, r->mesh->n_faces);
+    const double scale = sized > 0 ? sqrt(sized / area) : sqrt(r->options.refine);
+    make_exact(q);
+    mark_points(q);
+    qc__round_charts(r, q->rotation, q->axis);
+    const int8_t *axis = r->seamless->matching->axis ? q->axis : NULL;
+    const qc__exact_map map = {r->mesh, q->uv, q->bits, q->rotation, axis, q->point};
+    double made = 0, quads;
+    qc_status status = qc__quantize(r->ctx, &map, scale, sized, q->values, &made);
+    if (status == QC_ERR_FAILED) {
+        qc__log(r->ctx, QC_LOG_INFO, "no quantization: %s", qc_ctx_error(r->ctx)->text);
+        qc__clear_error(r->ctx);
+        return QC_OK;
+    }
+    if (status == QC_OK) status = read_integers(q);
+    if (status != QC_OK) return status;
+    r->coarse = false;
+    r->collisions = 0;
+    r->best_scale = 0;
+    *done = true;
+    warn_density(r, sized, made);
+    return qc__round_extend(r, sqrt(made / area), sized, NULL, &quads);
+}
+
+qc_status qc__round_quantized(qc__rounding *r, bool *done) {
+    const int64_t n_faces = r->mesh->n_faces;
+    *done = false;
+    if (r->options.lattice != QC_LATTICE_QUADS || r->mesh->n_poles > 0 || r->seams->n_free == 0)
+        return QC_OK;
+    quantizing q = {.r = r,
+                    .uv = QC__NEW(r->ctx, int64_t, 6 * n_faces),
+                    .values = QC__NEW(r->ctx, double, 6 * n_faces),
+                    .rotation = QC__NEW(r->ctx, int8_t, r->mesh->n_edges),
+                    .axis = QC__NEW(r->ctx, int8_t, r->mesh->n_edges),
+                    .point = QC__NEW(r->ctx, uint8_t, r->mesh->n_vertices),
+                    .placed = QC__NEW(r->ctx, uint8_t, n_faces),
+                    .queue = QC__NEW(r->ctx, int32_t, n_faces)};
+    const bool room = q.uv && q.values && q.rotation && q.axis && q.point && q.placed && q.queue;
+    const qc_status status = room ? quantize(&q, done) : QC_ERR_NOMEM;
+    void *const blocks[] = {q.uv, q.values, q.rotation, q.axis, q.point, q.placed, q.queue};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+    return status;
+}
