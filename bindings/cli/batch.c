@@ -3,6 +3,7 @@
 #include "bindings/cli/batch.h"
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char about[] =
     "Remeshes all meshes of a folder, of a text file with one path a line ('-' = stdin), or one "
@@ -96,6 +97,8 @@ static int check(const batch_settings *s) {
     }
     if (!s->source) return cli_error(EXIT_USAGE, "no meshes; usage: quadcover batch %s", synopsis);
     if (!s->output) return cli_error(EXIT_USAGE, "no folder for the results; give -o OUTDIR");
+    if (s->memory > 0 && batch_resident(getpid()) <= 0)
+        return cli_error(EXIT_USAGE, "--memory: this system does not tell how much a process has");
     if (s->again && s->skip_failed)
         return cli_error(EXIT_USAGE, "--again and --skip-failed exclude each other");
     if (s->slurm && s->tasks && strcmp(s->tasks, "-") == 0)

@@ -62,6 +62,13 @@ void batch_worker_stop(batch_worker *worker, const char *verdict);
 /* Waits for a worker without blocking. true: it has ended, its outputs are in place when it
  * succeeded, and *line is its line (NULL: interrupted, or out of memory). */
 bool batch_worker_ended(batch_worker *worker, json_t **line);
+/* The line of a worker which has ended as wait() says; written: its outputs are in place, if it
+ * succeeded. */
+struct rusage;
+json_t *batch_make_line(const batch_worker *worker, int ended, const struct rusage *usage,
+                        bool written);
+/* Resident megabytes of a process; 0 where the system does not tell. */
+double batch_resident(pid_t pid);
 /* Removes what dead programs left in the folder of a batch. */
 void batch_remove_leftovers(const char *folder);
 
@@ -89,6 +96,12 @@ bool batch_finished(const json_t *task, const json_t *line);
 bool batch_line_done(const json_t *line);
 /* Removes what an earlier run of a task which fails by now has left. */
 void batch_remove_outputs(const json_t *task);
+
+/* --- pictures -------------------------------------------------------------------------------- */
+
+/* Draws the result of a task for the summary; without memory or a mesh there is no picture. */
+void batch_draw(const json_t *task);
+char *batch_picture_path(const char *folder, const char *name);
 
 /* --- summary --------------------------------------------------------------------------------- */
 

@@ -1,6 +1,7 @@
 /* summary.html of a batch: failures first, then all meshes with links and figures, and how long
  * they took. One file, no scripts, no requests. */
 #include "bindings/cli/batch.h"
+#include "bindings/cli/report.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,7 @@
 static const char head[] =
     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-    "style-src 'unsafe-inline'\">\n"
+    "style-src 'unsafe-inline'; img-src data:\">\n"
     "<title>QuadCover batch</title>\n<style>\n"
     ":root{color-scheme:light dark}\n"
     "body{font:15px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem}\n"
@@ -50,6 +51,19 @@ static void print_link(FILE *out, const char *folder, const char *file, const ch
     }
     print_text(out, text);
     if (there) fputs("</a>", out);
+}
+
+/* A picture inside the page, where there is one. */
+static void print_picture(FILE *out, const char *folder, const char *name) {
+    unsigned char bytes[16384];
+    char *path = batch_picture_path(folder, name);
+    FILE *file = path ? fopen(path, "rb") : NULL;
+    const size_t n = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+    char *text = n > 0 ? cli_base64(bytes, n) : NULL;
+    if (text) fprintf(out, "<img alt=\"\" src=\"data:image/png;base64,%s\">", text);
+    if (file) fclose(file);
+    free(text);
+    free(path);
 }
 
 static void print_number(FILE *out, const json_t *line, const char *key, int digits) {
@@ -97,14 +111,16 @@ static void print_done(FILE *out, const char *folder, const json_t *lines) {
     enum { N = sizeof column / sizeof *column };
     json_t *line;
     size_t i;
-    fputs("<h2>Meshes</h2>\n<table><tr><th>mesh<th class=\"text\">", out);
+    fputs("<h2>Meshes</h2>\n<table><tr><th><th class=\"text\">mesh<th class=\"text\">", out);
     for (int c = 0; c < N; c++) fprintf(out, "<th>%s", column[c].title);
     fputc('\n', out);
     json_array_foreach(lines, i, line) {
         if (!batch_line_done(line)) continue;
         const char *name = batch_text(line, "name");
         char *mesh = batch_format("%s.obj", name), *report = batch_format("report/%s.html", name);
-        fputs("<tr><td class=\"text\">", out);
+        fputs("<tr><td>", out);
+        print_picture(out, folder, name);
+        fputs("<td class=\"text\">", out);
         if (mesh) print_link(out, folder, mesh, name);
         fputs("<td class=\"text\">", out);
         char *path = report ? batch_format("%s/%s", folder, report) : NULL;
@@ -121,6 +137,8 @@ static void print_done(FILE *out, const char *folder, const json_t *lines) {
 /* How many meshes took how long: bins of half a decade from 0.1 s to 3 hours. */
 static void print_times(FILE *out, const json_t *lines) {
     enum { BINS = 11, HEIGHT = 120, WIDTH = 60 };
+    static const char *const edge[BINS - 1] = {"0.1 s", "0.3 s", "1 s",   "3 s",    "10 s",
+                                               "32 s",  "100 s", "5 min", "17 min", "53 min"};
     int count[BINS] = {0}, most = 1;
     json_t *line;
     size_t i;
@@ -133,11 +151,10 @@ static void print_times(FILE *out, const json_t *lines) {
             HEIGHT + 40);
     for (int b = 0; b < BINS; b++) {
         const int height = HEIGHT * count[b] / most, x = WIDTH * b;
-        fprintf(out,
-                "<rect class=\"bar\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>"
-                "<text x=\"%d\" y=\"%d\">%.2g s</text>",
-                x + 2, HEIGHT + 18 - height, WIDTH - 4, height, x + WIDTH, HEIGHT + 36,
-                pow(10, (b - 2) / 2.0));
+        fprintf(out, "<rect class=\"bar\" x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\"/>", x + 2,
+                HEIGHT + 18 - height, WIDTH - 4, height);
+        if (b < BINS - 1)
+            fprintf(out, "<text x=\"%d\" y=\"%d\">%s</text>", x + WIDTH, HEIGHT + 36, edge[b]);
         if (count[b] > 0)
             fprintf(out, "<text x=\"%d\" y=\"%d\">%d</text>", x + WIDTH / 2, HEIGHT + 12 - height,
                     count[b]);

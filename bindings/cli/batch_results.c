@@ -33,6 +33,9 @@ void batch_remove_outputs(const json_t *task) {
     size_t i;
     json_array_foreach(json_object_get(task, "outputs"), i, output)
         unlink(json_string_value(output));
+    char *picture = batch_picture_path(batch_text(task, "folder"), batch_text(task, "name"));
+    if (picture) unlink(picture);
+    free(picture);
 }
 
 /* Another machine may have run a mesh twice: the first success counts. */

@@ -23,6 +23,12 @@ static int cores(void) {
     return n > 0 ? (int)n : 1;
 }
 
+/* How many of n meshes run at a time. */
+static int jobs(const batch *b, size_t n) {
+    const int most = b->settings->jobs > 0 ? (int)b->settings->jobs : cores();
+    return n > 0 && n < (size_t)most ? (int)n : most;
+}
+
 /* Makes and locks the folder: two batches would write the same files. */
 static int open_folder(batch *b, const char *path, bool exclusive) {
     if (mkdir(path, 0777) != 0 && errno != EEXIST)
@@ -44,7 +50,9 @@ static int on_line(void *user, const json_t *task, json_t *line) {
     const int status = batch_results_append(b->folder, b->results, line);
     b->ended++;
     b->bytes_ended += batch_number(line, "bytes");
-    if (!batch_line_done(line)) {
+    if (batch_line_done(line))
+        batch_draw(task);
+    else {
         json_array_append(b->failed, line);
         batch_remove_outputs(task);
     }
@@ -85,11 +93,11 @@ static json_t *choose(const batch *b) {
 
 static int make_tasks(batch *b) {
     const batch_settings *s = b->settings;
-    const int jobs = s->jobs > 0 ? (int)s->jobs : cores(), share = cores() / jobs;
     json_t *meshes = NULL;
     int status = batch_find(s->source, b->folder, &meshes);
     if (status == EXIT_DONE) status = batch_name(meshes);
     if (!s->threads) {
+        const int share = s->tasks || s->slurm ? 1 : cores() / jobs(b, json_array_size(meshes));
         char *word = batch_format("--threads=%d", share > 0 ? share : 1);
         json_array_append_new(s->options, word ? json_string(word) : NULL);
         free(word);
@@ -112,7 +120,7 @@ static int run_here(batch *b) {
     b->start = cli_seconds();
     b->on_terminal = s->progress == CLI_PROGRESS_AUTO && isatty(STDERR_FILENO);
     const int status =
-        batch_run(b->pending, s->jobs > 0 ? (int)s->jobs : cores(), b->program, &events);
+        batch_run(b->pending, jobs(b, json_array_size(b->pending)), b->program, &events);
     batch_quiet(b);
     batch_remove_leftovers(b->folder);
     int written = batch_results_write(b->folder, b->results);
@@ -155,7 +163,10 @@ static int on_part(void *user, const json_t *task, json_t *line) {
     int status =
         path && text ? cli_write_text(path, text) : cli_error(EXIT_FAILED, "out of memory");
     if (text) printf("%s\n", text);
-    if (!batch_line_done(line)) batch_remove_outputs(task);
+    if (batch_line_done(line))
+        batch_draw(task);
+    else
+        batch_remove_outputs(task);
     if (status == EXIT_DONE && !batch_line_done(line))
         status = cli_error(EXIT_FAILED, "%s: %s: %s", batch_text(line, "name"),
                            batch_text(line, "status"), batch_text(line, "message"));

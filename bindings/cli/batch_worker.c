@@ -146,8 +146,7 @@ void batch_worker_stop(batch_worker *w, const char *verdict) {
     kill(w->pid, SIGTERM);
 }
 
-/* Resident megabytes; 0 where the system does not tell. */
-static double resident(pid_t pid) {
+double batch_resident(pid_t pid) {
     char path[64];
     long size, pages = 0;
     snprintf(path, sizeof path, "/proc/%ld/statm", (long)pid);
@@ -161,35 +160,12 @@ static double resident(pid_t pid) {
 void batch_worker_watch(batch_worker *w) {
     const double now = cli_seconds(), limit = batch_number(w->task, "limit"),
                  memory = batch_number(w->task, "memory");
-    if (memory > 0 && !w->verdict && resident(w->pid) > memory) {
+    if (memory > 0 && !w->verdict && batch_resident(w->pid) > memory) {
         w->verdict = "memory";
         kill(-w->pid, SIGKILL);
     }
     if (limit > 0 && now - w->start > limit) batch_worker_stop(w, "timeout");
     if (w->kill_at > 0 && now > w->kill_at) kill(-w->pid, SIGKILL);
-}
-
-/* The last error which the process printed, or its last line. */
-static json_t *message(const batch_worker *w, int *warnings) {
-    static const char error[] = "quadcover: error: ", warning[] = "quadcover: warning: ";
-    char *path = batch_format("%s/messages", w->work), *line = NULL;
-    FILE *file = path ? fopen(path, "r") : NULL;
-    json_t *text = NULL;
-    size_t size = 0;
-    bool found = false;
-    while (file && getline(&line, &size, file) >= 0) {
-        line[strcspn(line, "\r\n")] = '\0';
-        const bool is_error = strncmp(line, error, strlen(error)) == 0;
-        *warnings += strncmp(line, warning, strlen(warning)) == 0;
-        if (!*line || (found && !is_error)) continue;
-        found = is_error;
-        json_decref(text);
-        text = json_string(line + (is_error ? strlen(error) : 0));
-    }
-    if (file) fclose(file);
-    free(line);
-    free(path);
-    return text;
 }
 
 /* Renames the outputs into place. */
@@ -206,78 +182,15 @@ static bool publish(const batch_worker *w) {
     return true;
 }
 
-static const char *status_word(const batch_worker *w, int ended) {
-    if (w->verdict) return w->verdict;
-    if (WIFSIGNALED(ended)) return "crashed";
-    if (WEXITSTATUS(ended) == EXIT_DONE) return "done";
-    return WEXITSTATUS(ended) == EXIT_INPUT ? "input" : "failed";
-}
-
-static json_t *reason(const batch_worker *w, int ended, json_t *said) {
-    const double limit = batch_number(w->task, "limit"), memory = batch_number(w->task, "memory");
-    char *text = NULL;
-    if (w->verdict && strcmp(w->verdict, "timeout") == 0)
-        text = batch_format("more than %g s", limit);
-    else if (w->verdict)
-        text = batch_format("more than %g MB", memory);
-    else if (WIFSIGNALED(ended))
-        text = batch_format("ended by signal %d", WTERMSIG(ended));
-    if (!text) return said ? said : json_string("");
-    json_t *result = json_string(text);
-    json_decref(said);
-    free(text);
-    return result;
-}
-
-/* Figures of the statistics which are worth comparing. */
-static void add_figures(json_t *line, const char *path) {
-    static const char *const figures[] = {"irregular", "rsd_edge", "rsd_angle",
-                                          "min_scaled_jacobian", "hausdorff_rel"};
-    json_t *stats = json_load_file(path, 0, NULL), *quads = json_object_get(stats, "quads");
-    json_object_set(line, "quads", json_object_get(quads, "faces"));
-    for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
-        json_object_set(line, figures[i], json_object_get(quads, figures[i]));
-    json_decref(stats);
-}
-
-static double seconds(struct timeval t) {
-    return (double)t.tv_sec + 1e-6 * (double)t.tv_usec;
-}
-
-static json_t *make_line(const batch_worker *w, int ended, const struct rusage *usage) {
-    const json_t *outputs = json_object_get(w->task, "outputs");
-    const double spent = cli_seconds() - w->start;
-    const char *status = status_word(w, ended);
-    bool done = strcmp(status, "done") == 0;
-    int warnings = 0;
-    json_t *text = reason(w, ended, message(w, &warnings));
-    if (done && !publish(w)) {
-        json_decref(text);
-        text = json_string("cannot write the results");
-        status = "failed";
-        done = false;
-    }
-    json_t *line = json_pack(
-        "{s:O,s:O,s:O,s:O,s:s,s:i,s:o,s:f,s:f,s:f,s:i}", "name", json_object_get(w->task, "name"),
-        "input", json_object_get(w->task, "input"), "bytes", json_object_get(w->task, "bytes"),
-        "key", json_object_get(w->task, "key"), "status", status, "exit",
-        WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended), "message", text, "seconds",
-        spent, "cpu_seconds", seconds(usage->ru_utime) + seconds(usage->ru_stime), "peak_rss_mb",
-        (double)usage->ru_maxrss / 1024, "warnings", warnings);
-    if (line && done) {
-        add_figures(line, json_string_value(json_array_get(outputs, 1)));
-        json_object_set(line, "output", json_array_get(outputs, 0));
-    }
-    return line;
-}
-
 bool batch_worker_ended(batch_worker *w, json_t **line) {
     struct rusage usage;
     int ended = 0;
     if (w->pid <= 0 || wait4(w->pid, &ended, WNOHANG, &usage) != w->pid) return false;
     kill(-w->pid, SIGKILL); /* what it started itself */
     const bool interrupted = w->verdict && strcmp(w->verdict, "interrupted") == 0;
-    *line = interrupted ? NULL : make_line(w, ended, &usage);
+    const bool done = !w->verdict && WIFEXITED(ended) && WEXITSTATUS(ended) == EXIT_DONE;
+    const bool written = !done || publish(w);
+    *line = interrupted ? NULL : batch_make_line(w, ended, &usage, written);
     release(w);
     return true;
 }

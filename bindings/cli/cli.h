@@ -132,6 +132,7 @@ double cli_seconds(void);
 int cli_check_writable(const char *path);
 /* Writes text to path through a temporary and a rename; "-" = stdout. */
 int cli_write_text(const char *path, const char *text);
+int cli_write_bytes(const char *path, const char *bytes, size_t n);
 /* Reads a mesh; EXIT_INPUT on failure. */
 int cli_read_mesh(cli_session *session, const char *path, qc_polygon_mesh **out);
 

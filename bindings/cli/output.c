@@ -27,11 +27,11 @@ int cli_check_writable(const char *path) {
     return reason ? cannot_write(path, reason) : EXIT_DONE;
 }
 
-static bool write_all(FILE *file, const char *text) {
-    return fputs(text, file) >= 0 && fflush(file) == 0;
+static bool write_all(FILE *file, const char *bytes, size_t n) {
+    return fwrite(bytes, 1, n, file) == n && fflush(file) == 0;
 }
 
-static int write_beside(const char *path, const char *text) {
+static int write_beside(const char *path, const char *bytes, size_t n) {
     const size_t length = strlen(path);
     char *temporary = malloc(length + 8);
     if (!temporary) return cli_error(EXIT_FAILED, "out of memory");
@@ -46,7 +46,7 @@ static int write_beside(const char *path, const char *text) {
     } else {
         const mode_t mask = umask(0);
         umask(mask);
-        bool good = fchmod(fd, 0666 & ~mask) == 0 && write_all(file, text);
+        bool good = fchmod(fd, 0666 & ~mask) == 0 && write_all(file, bytes, n);
         good = fclose(file) == 0 && good;
         if (!good || rename(temporary, path) != 0) status = cannot_write(path, errno);
     }
@@ -56,13 +56,17 @@ static int write_beside(const char *path, const char *text) {
 }
 
 int cli_write_text(const char *path, const char *text) {
+    return cli_write_bytes(path, text, strlen(text));
+}
+
+int cli_write_bytes(const char *path, const char *bytes, size_t n) {
     struct stat info;
     if (strcmp(path, "-") == 0)
-        return write_all(stdout, text) ? EXIT_DONE : cannot_write("stdout", errno);
-    if (stat(path, &info) != 0 || S_ISREG(info.st_mode)) return write_beside(path, text);
+        return write_all(stdout, bytes, n) ? EXIT_DONE : cannot_write("stdout", errno);
+    if (stat(path, &info) != 0 || S_ISREG(info.st_mode)) return write_beside(path, bytes, n);
     FILE *file = fopen(path, "w");
     if (!file) return cannot_write(path, errno);
-    const bool good = write_all(file, text);
+    const bool good = write_all(file, bytes, n);
     return fclose(file) == 0 && good ? EXIT_DONE : cannot_write(path, errno);
 }
 

@@ -21,6 +21,8 @@ int32_t *cli_integers(size_t n);
  * of memory. */
 void cli_arrays_add(cli_arrays *arrays, const char *name, int32_t *values, size_t count,
                     int stride);
+/* free() it. NULL: out of memory. */
+char *cli_base64(const unsigned char *in, size_t n);
 /* All arrays deflated as base64 text; free() it. NULL: out of memory. */
 char *cli_arrays_text(const cli_arrays *arrays);
 void cli_arrays_free(cli_arrays *arrays);

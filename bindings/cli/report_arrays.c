@@ -34,7 +34,7 @@ void cli_arrays_add(cli_arrays *arrays, const char *name, int32_t *values, size_
     free(values);
 }
 
-static char *base64(const unsigned char *in, size_t n) {
+char *cli_base64(const unsigned char *in, size_t n) {
     static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     char *text = malloc((n + 2) / 3 * 4 + 1), *out = text;
     if (!text) return NULL;
@@ -57,7 +57,7 @@ char *cli_arrays_text(const cli_arrays *arrays) {
     char *text = NULL;
     if (packed && compress2(packed, &size, arrays->bytes ? arrays->bytes : packed,
                             (uLong)arrays->size, 6) == Z_OK)
-        text = base64(packed, size);
+        text = cli_base64(packed, size);
     free(packed);
     return text;
 }

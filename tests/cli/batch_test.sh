@@ -14,10 +14,12 @@ once in/out a-x b-x 'with space' bad
 [ -e in/out/bad.obj ] && fail 'a bad mesh has a result'
 grep -q '"message":".*bad.off:1: ' in/out/results.jsonl || fail 'no message'
 grep -q '<h2>Failures</h2>' in/out/summary.html || fail 'no failures in the summary'
+[ "$(grep -c 'src="data:image/png;base64,' in/out/summary.html)" -eq 3 ] || fail 'no pictures in the summary'
 grep -q 'href="with%20space.obj"' in/out/summary.html || fail 'no link in the summary'
 for name in a-x b-x 'with space'; do
     [ "$(status_of in/out "$name")" = done ] || fail "status of $name"
     run 0 check "in/out/$name.obj"
+    head -c 4 "in/out/picture/$name.png" | grep -q PNG || fail "no picture of $name"
     [ -s "in/out/uv/$name.obj" ] || fail "no map of $name"
     [ -s "in/out/$name.json" ] || fail "no statistics of $name"
 done
@@ -47,6 +49,12 @@ run 1 batch in -o in/out --quads 250 --mode fast --uv --progress none
 run 1 batch in -o in/out --quads 250 --mode fast --uv --progress plain --skip-failed
 [ "$(wc -l <err)" -eq 1 ] || fail "a failure was tried again: $(cat err)"
 error_says '1 of 5 meshes failed: y'
+
+# Bytes which are no text, in a file and in a message about it.
+mkdir bytes
+printf 'OFF\n\377\376 3 4\n' >bytes/x.off
+run 1 batch bytes -o bytes/out
+grep -q "instead of '??'" bytes/out/results.jsonl || fail "message: $(cat bytes/out/results.jsonl)"
 
 # Lists: from a file and from standard input; a mesh named twice is done once.
 printf '%s\n' in/a/x.obj in/b/x.obj '' 'in/with space.obj' in/a/../a/x.obj >list.txt
