@@ -9,10 +9,17 @@
 
 /* --- paint and curvature ---------------------------------------------------------------------- */
 
+/* NULL = none */
+static const qc_attribute *paint_of(const qc_size_options *o) {
+    const qc_attribute *a =
+        o->input ? qc_polygon_mesh_attribute(o->input, QC_AT_VERTEX, "quality") : NULL;
+    return a && a->width == 1 ? a : NULL;
+}
+
 static void paint(const qc_mesh *mesh, const qc_size_options *o, double *length) {
     const double least = 1 / (o->range * o->range), most = o->range * o->range;
     for (int32_t t = 0; t < mesh->n_faces; t++) {
-        const double q = qc__corner_mean(mesh, t, o->input->quality, o->input->n_vertices);
+        const double q = qc__corner_mean(mesh, t, paint_of(o)->value, o->input->n_vertices);
         length[t] /= sqrt(fmin(fmax(isfinite(q) ? q : 1, least), most));
     }
 }
@@ -95,7 +102,7 @@ static qc_status check(qc_ctx *ctx, const qc_size_options *o) {
         !(o->anisotropy >= 1))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
                         "edge length, turn, range, gradation or anisotropy is off");
-    if (o->painted && (!o->input || !o->input->quality))
+    if (o->painted && !paint_of(o))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
                         "the input has no painted density; save it as PLY with the vertex property "
                         "`quality`");

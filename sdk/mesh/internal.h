@@ -92,6 +92,14 @@ static inline void qc__halfedge_vector(const qc_mesh *m, int32_t h, double out[3
 qc_status qc__polygon_name_groups(qc_ctx *ctx, qc_polygon_mesh *mesh, int32_t n,
                                   const char *const *name, const char *materials);
 
+void qc__polygon_free_attributes(qc_polygon_mesh *mesh);
+/* Numbers the different values (width numbers for each corner) at each vertex. index (n_corners):
+ * on entry -1 at corners without a value, which stay so; distinct (width n_corners, may be value):
+ * the *n values, in the order of their first corners. */
+qc_status qc__number_corner_values(qc_ctx *ctx, int32_t n_vertices, int32_t n_corners,
+                                   const int32_t *corner_vertex, int32_t width, const double *value,
+                                   int32_t *index, double *distinct, int32_t *n);
+
 /* --- polygon quality (polygon_quality.c) */
 
 /* Smallest sine of a corner angle against the normal of the polygon with the given n vertices: 1

@@ -20,8 +20,6 @@ static sizes add_up(int32_t n, const qc_polygon_mesh *const *parts) {
         s.lines += p->n_lines;
         if (p->face_line) s.flags |= QC_POLYGON_FACE_LINE;
         if (p->face_group) s.flags |= QC_POLYGON_FACE_GROUP;
-        if (p->colour) s.flags |= QC_POLYGON_COLOUR;
-        if (p->quality) s.flags |= QC_POLYGON_QUALITY;
         if (p->source_face) s.flags |= QC_POLYGON_SOURCE;
     }
     return s;
@@ -46,6 +44,30 @@ static void copy_source(qc_polygon_mesh *out, const qc_polygon_mesh *p, const in
                      3 * (size_t)p->n_vertices);
 }
 
+static void copy_attribute(const qc_attribute *to, const qc_attribute *from, int32_t n,
+                           int32_t begin) {
+    for (int64_t i = 0; i < n; i++)
+        memcpy(to->value + to->width * (begin + i), from->value + from->width * i,
+               (size_t)from->width * sizeof(double));
+}
+
+/* The attributes of all parts, each as wide as its widest. */
+static qc_status add_attributes(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *const *parts,
+                                qc_polygon_mesh *out) {
+    qc_status status = QC_OK;
+    for (int32_t i = 0; i < n; i++)
+        for (int32_t k = 0; k < parts[i]->n_attributes && status == QC_OK; k++) {
+            const qc_attribute *a = &parts[i]->attribute[k], *b;
+            int32_t width = a->width;
+            if (qc_polygon_mesh_attribute(out, a->at, a->name)) continue;
+            for (int32_t j = i + 1; j < n; j++)
+                if ((b = qc_polygon_mesh_attribute(parts[j], a->at, a->name)) && b->width > width)
+                    width = b->width;
+            status = qc_polygon_mesh_add_attribute(ctx, out, a->name, a->at, a->kind, width, NULL);
+        }
+    return status;
+}
+
 /* Appends part p at the counts reached so far. */
 static void append(qc_polygon_mesh *out, const qc_polygon_mesh *p, const int32_t *map,
                    const sizes *at) {
@@ -62,9 +84,12 @@ static void append(qc_polygon_mesh *out, const qc_polygon_mesh *p, const int32_t
     if (p->n_lines > 0) copy_ints(out->line + 2 * (size_t)line, p->line, 2 * p->n_lines, vertex);
     if (p->face_line) copy_ints(out->face_line + face, p->face_line, p->n_faces, 0);
     if (p->face_group) copy_ints(out->face_group + face, p->face_group, p->n_faces, 0);
-    if (p->colour)
-        copy_doubles(out->colour + 3 * (size_t)vertex, p->colour, 3 * (size_t)p->n_vertices);
-    if (p->quality) copy_doubles(out->quality + vertex, p->quality, (size_t)p->n_vertices);
+    for (int32_t i = 0; i < p->n_attributes; i++) {
+        const qc_attribute *a = &p->attribute[i];
+        const int32_t begin[] = {vertex, face, corner};
+        copy_attribute(qc_polygon_mesh_attribute(out, a->at, a->name), a,
+                       qc_polygon_mesh_elements(p, a->at), begin[a->at]);
+    }
     if (out->source_face) copy_source(out, p, map, vertex);
     for (int32_t i = 0; out->source_edge && i < p->n_lines; i++) out->source_edge[line + i] = -1;
 }
@@ -76,11 +101,15 @@ qc_status qc_polygon_mesh_merge(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *c
     if (total.vertices > limit || total.corners > limit || total.uvs > limit || total.lines > limit)
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "the union has more than %d vertices or corners",
                         (int)limit);
-    qc_polygon_mesh *merged;
+    qc_polygon_mesh *merged = NULL;
     qc_status status = qc_polygon_mesh_create(ctx, (int32_t)total.vertices, (int32_t)total.faces,
                                               (int32_t)total.corners, (int32_t)total.uvs,
                                               (int32_t)total.lines, total.flags, &merged);
-    if (status != QC_OK) return status;
+    if (status == QC_OK) status = add_attributes(ctx, n, parts, merged);
+    if (status != QC_OK) {
+        qc_object_release(merged);
+        return status;
+    }
     for (int32_t i = 0; i < n; i++) {
         append(merged, parts[i], source_map ? source_map[i] : NULL, &at);
         sizes part = add_up(1, parts + i);

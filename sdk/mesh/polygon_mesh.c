@@ -15,11 +15,10 @@ static void polygon_mesh_destroy(qc_object *object) {
     qc__free(p->face_group);
     qc__free(p->source_face);
     qc__free(p->source_barycentric);
-    qc__free(p->colour);
-    qc__free(p->quality);
     qc__free(p->group_name);
     qc__free(p->materials);
     qc__free(p->source_edge);
+    qc__polygon_free_attributes(p);
     qc__free(p);
 }
 
@@ -40,8 +39,6 @@ static bool allocate(qc_ctx *ctx, qc_polygon_mesh *p, uint32_t flags) {
         ok = ok && (p->source_barycentric = QC__ZERO(ctx, double, 3 * vertices));
         if (p->n_lines > 0) ok = ok && (p->source_edge = QC__ZERO(ctx, int32_t, p->n_lines));
     }
-    if (flags & QC_POLYGON_COLOUR) ok = ok && (p->colour = QC__ZERO(ctx, double, 3 * vertices));
-    if (flags & QC_POLYGON_QUALITY) ok = ok && (p->quality = QC__ZERO(ctx, double, vertices));
     return ok;
 }
 

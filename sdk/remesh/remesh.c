@@ -138,10 +138,11 @@ static qc_status run_whole(job *j, const qc_polygon_mesh *input) {
     return qc__parts_create(j->ctx, mesh, &j->parts);
 }
 
-/* Gives the quads the colours, groups and uvs of the input. */
+/* Gives the quads the attributes, groups and uvs of the input. */
 static qc_status keep_attributes(job *j, const qc_polygon_mesh *input) {
     qc_polygon_mesh *quads = NULL;
-    if (!j->result->quads || (!input->colour && !input->face_group && !input->uv)) return QC_OK;
+    if (!j->result->quads || (input->n_attributes == 0 && !input->face_group && !input->uv))
+        return QC_OK;
     const qc_status status =
         qc_quads_transfer(j->ctx, input, j->parts.mesh, j->result->quads, &quads);
     if (status != QC_OK) return status;

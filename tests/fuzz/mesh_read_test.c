@@ -2,6 +2,7 @@
  * proportion, and either a valid mesh or one line of error with status INPUT. */
 #include "unit/mesh_io/common.h"
 #include "unit/mesh_io/cube.h"
+#include "unit/mesh_io/rich.h"
 
 enum { ROUNDS = 1500 };
 
@@ -102,14 +103,19 @@ static void test_mutations(void **state) {
     qc_ctx *ctx = NULL;
     assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
     int good = 0;
-    for (int format = 0; format < CUBE_FORMATS; format++) {
+    for (int format = 0; format <= CUBE_FORMATS; format++) {
+        const bool rich = format == CUBE_FORMATS;
         uint64_t seed = 88172645463325252u + (uint64_t)format;
         for (int round = 0; round < ROUNDS; round++) {
             static bytes b;
             qc_polygon_mesh *m = NULL;
-            cube_bytes(format, &b);
+            if (rich)
+                memcpy(b.data, RICH_PLY, b.n = sizeof RICH_PLY - 1);
+            else
+                cube_bytes(format, &b);
             mutate(&b, &seed);
-            qc_status status = parse_bytes(ctx, b.data, b.n, CUBE_NAME[format], &m);
+            qc_status status =
+                parse_bytes(ctx, b.data, b.n, rich ? "a.ply" : CUBE_NAME[format], &m);
             if (status == QC_OK) {
                 good++;
                 check_mesh(ctx, m);

@@ -42,7 +42,7 @@ typedef struct qc_size_options {
                            along them                                                           */
     double range;       /* factor, >= 1, by which curvature and paint change a length at most   */
     double gradation; /* lengths grow by at most this times the way on the surface; 0 = no limit */
-    bool painted;     /* input->quality multiplies the number of quads on an area             */
+    bool painted;     /* the vertex attribute "quality" multiplies the number of quads on an area */
     const char *path; /* text: a length for each vertex, or for each face, of the input, or five
                          numbers: a length along a direction, that across, the direction; NULL =
                          none */

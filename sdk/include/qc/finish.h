@@ -35,10 +35,15 @@ typedef struct qc_relax_options {
 QC_API qc_status qc_quads_relax(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh *quads,
                                 const qc_relax_options *options, qc_polygon_mesh **out);
 
-/* A copy of quads with what `input` has: colours of vertices, interpolated; groups, of which a quad
- * gets the one most of it lies in; uvs at the corners of quads which lie in one chart (the others
- * get none). mesh is the surface repaired from the input, its source numbers being those of
- * `input`. What the quads have already is kept. Errors: ARGUMENT (a face is no quad), NOMEM. */
+/* A copy of quads with what `input` has. Attributes of vertices are interpolated at the closest
+ * place of the mesh: directions are unit vectors again, weights which sum to 1 still do, labels are
+ * those of the nearest vertex; of "joint" with "weight" (or "joints", "weights"; as wide as each
+ * other, 16 at most) the heaviest joints are kept. Attributes of corners are those on the side of
+ * the quad, and so are directions of vertices which the repair has merged. Of faces and groups a
+ * quad gets the mean, of labels and groups the one most of it lies in. uvs are at the corners of
+ * quads which lie in one chart (the others get none). mesh is the surface repaired from the input,
+ * its source numbers being those of `input`. What the quads have already is kept. Errors: ARGUMENT
+ * (a face is no quad), NOMEM. */
 QC_API qc_status qc_quads_transfer(qc_ctx *ctx, const qc_polygon_mesh *input, const qc_mesh *mesh,
                                    const qc_polygon_mesh *quads, qc_polygon_mesh **out);
 

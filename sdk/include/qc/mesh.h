@@ -25,6 +25,21 @@ extern "C" {
 
 /* --- polygon meshes --------------------------------------------------------------------------- */
 
+/* Numbers which vertices, faces or corners carry, by name: colours, normals, weights, anything. */
+enum { QC_AT_VERTEX = 0, QC_AT_FACE, QC_AT_CORNER };
+enum {
+    QC_ATTRIBUTE_LINEAR = 0, /* may be interpolated */
+    QC_ATTRIBUTE_DIRECTION,  /* a unit vector: interpolated, then scaled to length 1; 0 = none */
+    QC_ATTRIBUTE_LABEL       /* whole numbers, of which one is taken */
+};
+typedef struct qc_attribute {
+    const char *name; /* "colour" (red, green, blue and maybe alpha, 0..1), "normal", "quality" (a
+                         painted density) and "joint" with "weight" have a meaning of their own */
+    int32_t at, kind; /* QC_AT_..., QC_ATTRIBUTE_... */
+    int32_t width;    /* numbers an element has      */
+    double *value;    /* width * elements            */
+} qc_attribute;
+
 /* All arrays are owned by the object; optional ones are NULL. */
 typedef struct qc_polygon_mesh {
     qc_object object;
@@ -42,27 +57,36 @@ typedef struct qc_polygon_mesh {
     double *source_barycentric; /* ... and 3 n_vertices barycentric coordinates in it */
     int32_t *source_edge; /* optional, n_lines: edge of that mesh where line[2 i] or its other end
                              begins; -1 = not known, as in a union                              */
-    double *colour;       /* optional, 3 n_vertices: red, green, blue, 0..1 */
-    double *quality;      /* optional, n_vertices: the PLY property `quality`, a painted density  */
     int32_t n_groups;     /* group_name[i] belongs to face_group i + 1 */
     char **group_name;    /* optional, n_groups: the OBJ statements which select it, one a line:
                              "g wheel\nusemtl rubber" */
     char *materials;      /* optional: the OBJ statement "mtllib ..." */
+    int32_t n_attributes;
+    qc_attribute *attribute; /* optional, n_attributes, no two of one place with one name */
 } qc_polygon_mesh;
 
 /* Allocates zeroed arrays for the given sizes (n_uvs > 0 also makes corner_uv, SOURCE with
  * n_lines > 0 source_edge; flags add optional arrays). The caller fills them before publishing,
  * owns *out, frees with qc_object_release. */
-enum {
-    QC_POLYGON_FACE_LINE = 1,
-    QC_POLYGON_FACE_GROUP = 2,
-    QC_POLYGON_SOURCE = 4,
-    QC_POLYGON_COLOUR = 8,
-    QC_POLYGON_QUALITY = 16
-};
+enum { QC_POLYGON_FACE_LINE = 1, QC_POLYGON_FACE_GROUP = 2, QC_POLYGON_SOURCE = 4 };
 QC_API qc_status qc_polygon_mesh_create(qc_ctx *ctx, int32_t n_vertices, int32_t n_faces,
                                         int32_t n_corners, int32_t n_uvs, int32_t n_lines,
                                         uint32_t flags, qc_polygon_mesh **out);
+
+/* Adds an attribute of zeros to a mesh which is not yet shared; *value (may be NULL) is its array,
+ * to be filled. Errors: ARGUMENT (no name, width < 1, the name is taken there), NOMEM. */
+QC_API qc_status qc_polygon_mesh_add_attribute(qc_ctx *ctx, qc_polygon_mesh *mesh, const char *name,
+                                               int32_t at, int32_t kind, int32_t width,
+                                               double **value);
+/* The attribute of that name and place; NULL = none. */
+QC_API const qc_attribute *qc_polygon_mesh_attribute(const qc_polygon_mesh *mesh, int32_t at,
+                                                     const char *name);
+/* Vertices, faces or corners. */
+static inline int32_t qc_polygon_mesh_elements(const qc_polygon_mesh *mesh, int32_t at) {
+    return at == QC_AT_VERTEX ? mesh->n_vertices
+           : at == QC_AT_FACE ? mesh->n_faces
+                              : mesh->n_corners;
+}
 
 /* Reads OBJ, OFF, PLY (ASCII, binary little and big endian) or STL (ASCII, binary); the format is
  * recognised by content, then by extension. path "-" = stdin. Errors: IO; INPUT with the line
@@ -72,14 +96,28 @@ QC_API qc_status qc_polygon_mesh_read(qc_ctx *ctx, const char *path, qc_polygon_
 /* The same from memory; name is used for messages and for the extension (may be NULL). */
 QC_API qc_status qc_polygon_mesh_parse(qc_ctx *ctx, const void *data, size_t size, const char *name,
                                        qc_polygon_mesh **out);
-/* Writes OBJ (path "-" = stdout) through a temporary and a rename; numbers round-trip; vt per
- * corner when the mesh has uvs. comment (may be NULL) becomes `#` lines at the top. */
+
+/* Formats of files. AUTO: that of the extension (.obj, .off, .ply: binary), else OBJ. */
+enum {
+    QC_FORMAT_AUTO = 0,
+    QC_FORMAT_OBJ,      /* with vt per corner, vn, colours behind coordinates, groups, lines */
+    QC_FORMAT_OFF,      /* vertices and faces only                                           */
+    QC_FORMAT_PLY,      /* binary, little endian: everything but sources of vertices         */
+    QC_FORMAT_PLY_ASCII /* the same as text                                                  */
+};
+/* Writes through a temporary and a rename (path "-" = stdout). Numbers round-trip, but for colours
+ * of PLY, which are bytes there. comment (may be NULL) becomes comment lines at the top. Errors:
+ * ARGUMENT (a number which is not finite, a format which is none), IO, NOMEM, CANCELLED. */
+QC_API qc_status qc_polygon_mesh_write_as(qc_ctx *ctx, const qc_polygon_mesh *mesh,
+                                          const char *path, int32_t format, const char *comment);
+/* The same with QC_FORMAT_AUTO. */
 QC_API qc_status qc_polygon_mesh_write(qc_ctx *ctx, const qc_polygon_mesh *mesh, const char *path,
                                        const char *comment);
 /* Disjoint union of n meshes. Source faces of mesh i are mapped through source_map[i] (source_map
  * or an entry of it NULL = no change). An optional array exists in the result when some part has
- * it; elsewhere it says "none" (-1 for uvs and source faces, 0 for the others). Groups keep their
- * numbers; their names are those of the first part which has any. */
+ * it; elsewhere it says "none" (-1 for uvs and source faces, 0 for the others). Attributes are one
+ * where name and place are the same, with the largest width and the kind of the first. Groups keep
+ * their numbers; their names are those of the first part which has any. */
 QC_API qc_status qc_polygon_mesh_merge(qc_ctx *ctx, int32_t n, const qc_polygon_mesh *const *parts,
                                        const int32_t *const *source_map, qc_polygon_mesh **out);
 

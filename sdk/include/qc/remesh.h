@@ -54,7 +54,7 @@ typedef struct qc_remesh_result {
     qc_mesh *mesh;             /* the whole surface after the first steps (repaired) */
     qc_repair_report *repairs; /* what was changed to get it; logged as warnings, too */
     qc_polygon_mesh *quads;    /* source_face counts faces of the input, whose
-                                  colours, groups and uvs they have */
+                                  attributes, groups and uvs they have */
     qc_polygon_mesh *uv;       /* the triangles with one vt per corner */
     qc_face_field *field; /* cross field on `mesh`; components that failed have a constant one */
     qc_report *report;    /* sums over the components; report->input is that of `mesh` */

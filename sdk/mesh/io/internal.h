@@ -60,6 +60,14 @@ qc_status qc__take_point(qc__text *t, const char *what, int64_t number, double x
 
 /* --- growing polygon mesh --------------------------------------------------------------------- */
 
+typedef struct qc__soup_attribute {
+    const char *name; /* in the file, not terminated */
+    size_t length;
+    int32_t at, kind, width;
+    double *value; /* as far as elements have one */
+    int64_t n, capacity;
+} qc__soup_attribute;
+
 typedef struct qc__soup {
     qc_ctx *ctx;
     double *position, *uv;
@@ -68,9 +76,13 @@ typedef struct qc__soup {
     int64_t n_position, n_uv, n_corner, n_corner_uv, n_line, n_face; /* in array entries */
     int64_t c_position, c_uv, c_corner, c_corner_uv, c_line, c_face_begin, c_face_line,
         c_face_group;
-    double *colour, *quality; /* 3 and 1 a vertex, as far as vertices have them */
-    int64_t n_colour, n_quality, c_colour, c_quality;
-    char *group_name; /* texts one after the other, each with its NUL, of groups 1, 2, ... */
+    double *normal;         /* OBJ vn, and what the corners refer to, -1 = none */
+    int32_t *corner_normal; /* as far as corners have one */
+    int64_t n_normal, n_corner_normal, c_normal, c_corner_normal;
+    qc__soup_attribute *attribute;
+    int64_t n_attribute, c_attribute;
+    bool uv_by_corner; /* every corner has a uv of its own: equal ones at a vertex are to be one */
+    char *group_name;  /* texts one after the other, each with its NUL, of groups 1, 2, ... */
     int64_t n_group_name, c_group_name;
     int32_t n_groups;
     char *materials; /* or NULL */
@@ -80,15 +92,22 @@ typedef struct qc__soup {
 
 void qc__soup_free(qc__soup *s);
 bool qc__soup_vertex(qc__soup *s, const double xyz[3]);
-/* Colour and quality of the last vertex; those of earlier vertices without one are 0. */
-bool qc__soup_colour(qc__soup *s, const double rgb[3]);
-bool qc__soup_quality(qc__soup *s, double quality);
+bool qc__soup_normal(qc__soup *s, const double xyz[3]);
+/* An attribute: the number of the one with this name and place, or of a new one; *index = -1 when
+ * it has another width. name is borrowed. */
+bool qc__soup_attribute_add(qc__soup *s, const char *name, size_t length, int32_t at, int32_t kind,
+                            int32_t width, int32_t *index);
+/* Its value at the last vertex, face or corner; 0 at earlier ones without a value. */
+bool qc__soup_set(qc__soup *s, int32_t index, const double *x);
 /* The text of the next group. */
 bool qc__soup_group(qc__soup *s, const char *text, size_t n);
+bool qc__soup_group_more(qc__soup *s, const char *text, size_t n); /* a line more of the last one */
+qc_status qc__soup_materials(qc__soup *s, const char *text, size_t n); /* the first one counts */
 bool qc__soup_uv(qc__soup *s, double u, double v);
 /* A face is opened, then gets corners. vertex and uv are 0-based, uv = -1: none. */
 bool qc__soup_face(qc__soup *s, int64_t line, int32_t group);
 bool qc__soup_corner(qc__soup *s, int64_t vertex, int64_t uv);
+bool qc__soup_corner_normal(qc__soup *s, int64_t normal); /* of the last corner */
 bool qc__soup_line(qc__soup *s, int64_t a, int64_t b);
 /* Checks indices and counts and makes the mesh; t is for messages. */
 qc_status qc__soup_finish(qc__soup *s, qc__text *t, qc_polygon_mesh **out);
@@ -102,5 +121,6 @@ qc_status qc__read_stl_ascii(qc__text *t, qc__soup *s);
 qc_status qc__read_stl_binary(qc__text *t, qc__soup *s);
 bool qc__is_stl_binary(const char *data, size_t size); /* 84 + 50 n bytes */
 bool qc__is_off(const qc__text *t);
+bool qc__ends_in(const char *name, const char *extension); /* ".ply", in any case */
 
 #endif

@@ -1,4 +1,4 @@
-/* Wavefront OBJ: v with colours, vt, f, l, mtllib, and o, g and usemtl as numbered groups;
+/* Wavefront OBJ: v with colours, vt, vn, f, l, mtllib, and o, g and usemtl as numbered groups;
  * everything else is skipped. */
 #include "internal.h"
 
@@ -101,11 +101,12 @@ static qc_status resolve(qc__text *t, int64_t i, int64_t n, const char *what, in
     return QC_OK;
 }
 
-/* v, v/vt, v//vn or v/vt/vn; uv = -1 when absent. */
-static qc_status take_reference(qc__text *t, qc__soup *s, int64_t *vertex, int64_t *uv) {
+/* v, v/vt, v//vn or v/vt/vn; uv and normal = -1 when absent. */
+static qc_status take_reference(qc__text *t, qc__soup *s, int64_t *vertex, int64_t *uv,
+                                int64_t *normal) {
     char excerpt[QC__EXCERPT];
     int64_t i;
-    *uv = -1;
+    *uv = *normal = -1;
     if (!qc__take_int(t, &i))
         return qc__text_fail(t, t->line, "'%s' is not a vertex index; export the file again",
                              qc__excerpt(t, excerpt));
@@ -113,7 +114,10 @@ static qc_status take_reference(qc__text *t, qc__soup *s, int64_t *vertex, int64
     for (int k = 0; k < 2 && status == QC_OK && t->p < t->end && *t->p == '/'; k++) {
         t->p++;
         if (!qc__take_int(t, &i)) continue;
-        if (k == 0) status = resolve(t, i, s->n_uv / 2, "texture", uv);
+        if (k == 0)
+            status = resolve(t, i, s->n_uv / 2, "texture", uv);
+        else
+            *normal = i > 0 ? i - 1 : s->n_normal / 3 + i;
     }
     if (status == QC_OK && t->p < t->end && *t->p == '/')
         return qc__text_fail(t, t->line,
@@ -129,12 +133,13 @@ static bool line_goes_on(qc__text *t) {
 }
 
 static qc_status read_face(qc__text *t, qc__soup *s, group_names *g) {
-    int64_t first = t->line, n = 0, vertex, uv;
+    int64_t first = t->line, n = 0, vertex, uv, normal;
     if (!group_update(t->ctx, g) || !qc__soup_face(s, first, g->number)) return QC_ERR_NOMEM;
     for (; line_goes_on(t); n++) {
-        qc_status status = take_reference(t, s, &vertex, &uv);
+        qc_status status = take_reference(t, s, &vertex, &uv, &normal);
         if (status != QC_OK) return status;
         if (!qc__soup_corner(s, vertex, uv)) return QC_ERR_NOMEM;
+        if (normal >= 0 && !qc__soup_corner_normal(s, normal)) return QC_ERR_NOMEM;
     }
     if (n < 3)
         return qc__text_fail(t, first,
@@ -145,9 +150,9 @@ static qc_status read_face(qc__text *t, qc__soup *s, group_names *g) {
 }
 
 static qc_status read_polyline(qc__text *t, qc__soup *s) {
-    int64_t previous = -1, vertex, uv;
+    int64_t previous = -1, vertex, uv, normal;
     while (line_goes_on(t)) {
-        qc_status status = take_reference(t, s, &vertex, &uv);
+        qc_status status = take_reference(t, s, &vertex, &uv, &normal);
         if (status != QC_OK) return status;
         if (previous >= 0 && !qc__soup_line(s, previous, vertex)) return QC_ERR_NOMEM;
         previous = vertex;
@@ -164,7 +169,20 @@ static qc_status read_vertex(qc__text *t, qc__soup *s) {
     while (status == QC_OK && n < 3 && line_goes_on(t) && qc__take_double(t, &more[n]) &&
            isfinite(more[n]))
         n++;
-    return n == 3 && !qc__soup_colour(s, more) ? QC_ERR_NOMEM : status;
+    if (n < 3) return status;
+    int32_t colour;
+    return qc__soup_attribute_add(s, "colour", 6, QC_AT_VERTEX, QC_ATTRIBUTE_LINEAR, 3, &colour) &&
+                   qc__soup_set(s, colour, more)
+               ? QC_OK
+               : QC_ERR_NOMEM;
+}
+
+/* What is not a number counts as 0. */
+static qc_status read_normal(qc__text *t, qc__soup *s) {
+    double x[3] = {0, 0, 0};
+    for (int k = 0; k < 3 && line_goes_on(t); k++)
+        if (!qc__take_double(t, &x[k]) || !isfinite(x[k])) x[k] = 0;
+    return qc__soup_normal(s, x) ? QC_OK : QC_ERR_NOMEM;
 }
 
 static qc_status read_uv(qc__text *t, qc__soup *s) {
@@ -188,21 +206,12 @@ static size_t statement_length(const qc__text *t, const char *statement) {
     return (size_t)(end - statement);
 }
 
-/* kind: 0 = o, 1 = g, 2 = usemtl. */
+/* kind: 0 = o, 1 = g, 2 = usemtl; one without a name ends the one before. */
 static void read_group(const qc__text *t, group_names *g, int kind, const char *statement) {
-    g->said[kind].p = statement;
-    g->said[kind].n = statement_length(t, statement);
-    g->fresh = true;
-}
-
-static qc_status read_materials(const qc__text *t, qc__soup *s, const char *statement) {
     const size_t n = statement_length(t, statement);
-    if (s->materials) return QC_OK;
-    s->materials = QC__NEW(t->ctx, char, n + 1);
-    if (!s->materials) return QC_ERR_NOMEM;
-    memcpy(s->materials, statement, n);
-    s->materials[n] = 0;
-    return QC_OK;
+    g->said[kind].p = statement;
+    g->said[kind].n = statement + n > t->p ? n : 0;
+    g->fresh = true;
 }
 
 static bool is(const char *word, size_t n, const char *name) {
@@ -217,8 +226,9 @@ static qc_status read_statement(qc__text *t, qc__soup *s, group_names *g) {
     if (is(word, n, "v")) return read_vertex(t, s);
     if (is(word, n, "f") || is(word, n, "fo")) return read_face(t, s, g); /* fo: its old name */
     if (is(word, n, "vt")) return read_uv(t, s);
+    if (is(word, n, "vn")) return read_normal(t, s);
     if (is(word, n, "l")) return read_polyline(t, s);
-    if (is(word, n, "mtllib")) return read_materials(t, s, word);
+    if (is(word, n, "mtllib")) return qc__soup_materials(s, word, statement_length(t, word));
     for (int kind = 0; kind < 3; kind++)
         if (is(word, n, kinds[kind])) read_group(t, g, kind, word);
     return QC_OK;

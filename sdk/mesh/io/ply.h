@@ -16,42 +16,62 @@ enum {
     QC__PLY_F32,
     QC__PLY_F64
 };
-/* What a property is used for: coordinates 0, 1, 2, colours 3, 4, 5, quality, the corners of a
- * face, or nothing. */
+/* What a list is used for. */
 enum {
-    QC__PLY_X,
-    QC__PLY_Y,
-    QC__PLY_Z,
-    QC__PLY_RED,
-    QC__PLY_GREEN,
-    QC__PLY_BLUE,
-    QC__PLY_QUALITY,
+    QC__PLY_SKIP, /* nothing (scalars are told by their slots) */
     QC__PLY_CORNERS,
-    QC__PLY_SKIP
+    QC__PLY_UVS,          /* two numbers for each corner of the face */
+    QC__PLY_CORNER_VALUES /* some numbers for each corner: an attribute */
+};
+/* Numbers of one element are gathered in slots. The first ones have a meaning. */
+enum {
+    QC__PLY_X = 0,     /* vertex: x, y, z */
+    QC__PLY_U = 3,     /* vertex: u, v    */
+    QC__PLY_GROUP = 0, /* face  */
+    QC__PLY_ENDS = 0,  /* edge: vertex1, vertex2 */
+    QC__PLY_FREE = 5   /* attributes */
 };
 
 typedef struct qc__ply_property {
     uint8_t type, count_type; /* count_type QC__PLY_NONE: a scalar */
-    uint8_t role;
+    uint8_t role;             /* of a list */
+    const char *name;         /* in the file */
+    size_t length;
+    int64_t slot; /* of a scalar, -1 = not used */
+    double full;  /* which its value is divided by */
 } qc__ply_property;
+
+/* `width` slots which become a value of an attribute of the soup. */
+typedef struct qc__ply_value {
+    int32_t index, width;
+    int64_t slot;
+} qc__ply_value;
 
 typedef struct qc__ply_element {
     char name[16]; /* shortened */
     int64_t count, line;
     int64_t property, n_properties; /* range in the table of properties */
+    int64_t value, n_values;        /* range in the table of values     */
     int64_t least_bytes;            /* of one element in a binary file, with empty lists */
     bool has_list;
+    bool has_uv, has_group, has_ends; /* slots with a meaning which are filled */
 } qc__ply_element;
 
 typedef struct qc__ply_header {
     int format;
     qc__ply_element *element;
     qc__ply_property *property;
-    int64_t n_elements, n_properties, c_elements, c_properties;
+    qc__ply_value *value;
+    int64_t n_elements, n_properties, n_values, c_elements, c_properties, c_values;
+    int64_t n_slots;           /* most of an element */
+    bool corner_uv, vertex_uv; /* where uvs come from, at most one */
 } qc__ply_header;
 
-int qc__ply_size(int type); /* bytes of a scalar */
+int qc__ply_size(int type);                                   /* bytes of a scalar */
+bool qc__ply_is(const qc__ply_property *p, const char *name); /* in any case */
 /* Leaves t at the first byte of the data. The tables are freed by the caller, also on failure. */
-qc_status qc__ply_read_header(qc__text *t, qc__ply_header *h);
+qc_status qc__ply_read_header(qc__text *t, qc__soup *s, qc__ply_header *h);
+/* What every property is used for; declares the attributes. */
+qc_status qc__ply_plan(qc__soup *s, qc__ply_header *h);
 
 #endif

@@ -62,16 +62,13 @@ static qc_status read_element(qc__text *t, qc__ply_header *h) {
     return QC_OK;
 }
 
-static int role_of(qc__text *t, const qc__ply_element *e, bool list) {
-    static const char *const scalar[] = {"x", "y", "z", "red", "green", "blue", "quality"};
-    qc__skip_blanks(t);
-    if (!list && strcmp(e->name, "vertex") == 0)
-        for (int k = 0; k <= QC__PLY_QUALITY; k++)
-            if (qc__take_word(t, scalar[k])) return k;
-    if (list && strcmp(e->name, "face") == 0 &&
-        (qc__take_word(t, "vertex_indices") || qc__take_word(t, "vertex_index")))
-        return QC__PLY_CORNERS;
-    return QC__PLY_SKIP;
+bool qc__ply_is(const qc__ply_property *p, const char *name) {
+    size_t i = 0;
+    for (; i < p->length && name[i]; i++) {
+        const char c = p->name[i];
+        if ((c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c) != name[i]) return false;
+    }
+    return i == p->length && !name[i];
 }
 
 static qc_status read_property(qc__text *t, qc__ply_header *h) {
@@ -91,7 +88,11 @@ static qc_status read_property(qc__text *t, qc__ply_header *h) {
     if (!count_ok || p.type == QC__PLY_NONE)
         return qc__text_fail(t, t->line, "unknown property type '%s'; export the file again",
                              qc__excerpt(t, excerpt));
-    p.role = (uint8_t)role_of(t, e, list);
+    qc__skip_blanks(t);
+    p.name = t->p;
+    p.length = qc__word_length(t);
+    p.slot = -1;
+    p.full = 1;
     e->has_list |= list;
     e->least_bytes += qc__ply_size(list ? p.count_type : p.type);
     e->n_properties++;
@@ -123,11 +124,15 @@ static qc_status check_header(qc__text *t, const qc__ply_header *h) {
                                  "the header promises %lld elements '%s' but only %lld "
                                  "bytes follow; the file is cut off, export it again",
                                  (long long)e->count, e->name, (long long)(t->end - t->p));
-        unsigned roles = 0;
-        for (int64_t k = 0; k < e->n_properties; k++)
-            roles |= 1u << h->property[e->property + k].role;
-        if ((strcmp(e->name, "vertex") == 0 && (roles & 7u) != 7u) ||
-            (strcmp(e->name, "face") == 0 && !(roles & (1u << QC__PLY_CORNERS))))
+        int coordinates = 0;
+        bool corners = false;
+        for (int64_t k = 0; k < e->n_properties; k++) {
+            const qc__ply_property *p = &h->property[e->property + k];
+            coordinates += p->slot >= QC__PLY_X && p->slot < QC__PLY_X + 3;
+            corners |= p->role == QC__PLY_CORNERS;
+        }
+        if ((strcmp(e->name, "vertex") == 0 && coordinates != 3) ||
+            (strcmp(e->name, "face") == 0 && !corners))
             return qc__text_fail(
                 t, e->line, "element '%s' lacks %s; export the file again", e->name,
                 e->name[0] == 'v' ? "a property x, y or z" : "the list vertex_indices");
@@ -135,7 +140,25 @@ static qc_status check_header(qc__text *t, const qc__ply_header *h) {
     return QC_OK;
 }
 
-qc_status qc__ply_read_header(qc__text *t, qc__ply_header *h) {
+/* "group 3 g wheel", "mtllib a.mtl": what OBJ files say of groups. Statements of one group follow
+ * each other and groups come in order; anything else is a comment of no meaning. */
+static qc_status read_comment(qc__text *t, qc__soup *s) {
+    int64_t group;
+    qc__skip_blanks(t);
+    const char *begin = t->p, *end = begin;
+    while (end < t->end && !qc__is_end(*end)) end++;
+    if (qc__take_word(t, "mtllib")) return qc__soup_materials(s, begin, (size_t)(end - begin));
+    if (!qc__take_word(t, "group")) return QC_OK;
+    qc__skip_blanks(t);
+    if (!qc__take_int(t, &group)) return QC_OK;
+    qc__skip_blanks(t);
+    if (group == s->n_groups + 1)
+        return qc__soup_group(s, t->p, (size_t)(end - t->p)) ? QC_OK : QC_ERR_NOMEM;
+    if (group != s->n_groups || group == 0) return QC_OK;
+    return qc__soup_group_more(s, t->p, (size_t)(end - t->p)) ? QC_OK : QC_ERR_NOMEM;
+}
+
+qc_status qc__ply_read_header(qc__text *t, qc__soup *s, qc__ply_header *h) {
     qc_status status = QC_OK;
     char excerpt[QC__EXCERPT];
     h->format = -1;
@@ -152,8 +175,9 @@ qc_status qc__ply_read_header(qc__text *t, qc__ply_header *h) {
             status = read_element(t, h);
         else if (qc__take_word(t, "property"))
             status = read_property(t, h);
-        else if (!qc__at_line_end(t) && !qc__take_word(t, "comment") &&
-                 !qc__take_word(t, "obj_info"))
+        else if (qc__take_word(t, "comment"))
+            status = read_comment(t, s);
+        else if (!qc__at_line_end(t) && !qc__take_word(t, "obj_info"))
             status = qc__text_fail(t, t->line, "unknown PLY statement '%s'; export the file again",
                                    qc__excerpt(t, excerpt));
     }
@@ -161,5 +185,6 @@ qc_status qc__ply_read_header(qc__text *t, qc__ply_header *h) {
     if (h->format < 0)
         return qc__text_fail(t, t->line, "the PLY header has no format; export the file again");
     skip_header_end(t);
-    return check_header(t, h);
+    status = qc__ply_plan(s, h);
+    return status == QC_OK ? check_header(t, h) : status;
 }

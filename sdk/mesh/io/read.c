@@ -5,7 +5,7 @@
 
 typedef qc_status reader(qc__text *t, qc__soup *s);
 
-static bool has_extension(const char *name, const char *extension) {
+bool qc__ends_in(const char *name, const char *extension) {
     size_t n = strlen(name), m = strlen(extension);
     if (n < m) return false;
     for (size_t i = 0; i < m; i++) {
@@ -44,9 +44,9 @@ static reader *recognise(const qc__text *t) {
     if (qc__is_stl_binary(t->begin, (size_t)(t->end - t->begin))) return qc__read_stl_binary;
     if (is_stl_ascii(t)) return qc__read_stl_ascii;
     if (is_obj(t)) return qc__read_obj;
-    if (has_extension(t->name, ".obj")) return qc__read_obj;
-    if (has_extension(t->name, ".off")) return qc__read_off;
-    if (has_extension(t->name, ".stl")) return qc__read_stl_binary;
+    if (qc__ends_in(t->name, ".obj")) return qc__read_obj;
+    if (qc__ends_in(t->name, ".off")) return qc__read_off;
+    if (qc__ends_in(t->name, ".stl")) return qc__read_stl_binary;
     return NULL;
 }
 
@@ -71,7 +71,7 @@ qc_status qc_polygon_mesh_parse(qc_ctx *ctx, const void *data, size_t size, cons
             ctx, QC_ERR_INPUT, 1,
             "%s: the content is not recognised as OBJ, OFF, PLY or STL%s; convert it to "
             "one of these",
-            t.name, has_extension(t.name, ".ply") ? " (a PLY file begins with 'ply')" : "");
+            t.name, qc__ends_in(t.name, ".ply") ? " (a PLY file begins with 'ply')" : "");
     qc__soup soup = {.ctx = ctx};
     status = read(&t, &soup);
     if (status == QC_OK) status = qc__soup_finish(&soup, &t, out);

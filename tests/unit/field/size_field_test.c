@@ -124,7 +124,7 @@ static void paint_multiplies_the_density(void **state) {
     qc_polygon_mesh *in = NULL;
     qc_mesh *m = NULL;
     assert_int_equal(qc_polygon_mesh_parse(*state, ply, sizeof ply - 1, "a.ply", &in), QC_OK);
-    assert_non_null(in->quality);
+    assert_non_null(qc_polygon_mesh_attribute(in, QC_AT_VERTEX, "quality"));
     assert_int_equal(qc_mesh_create(*state, 4, in->position, 2, in->face_vertex, &m), QC_OK);
     qc_size_options o = QC_SIZE_OPTIONS_INIT;
     o.edge_length = 1;

@@ -26,11 +26,15 @@ static void test_failures(void **state) {
     qc_polygon_mesh *q = quad_grid(*state, 3, 0.2, -1, 1);
     qc_polygon_mesh *all = NULL;
     assert_int_equal(qc_polygon_mesh_create(*state, m->n_vertices, m->n_faces, 3 * m->n_faces, 1, 0,
-                                            QC_POLYGON_FACE_GROUP | QC_POLYGON_COLOUR, &all),
+                                            QC_POLYGON_FACE_GROUP, &all),
                      QC_OK);
     memcpy(all->position, m->position, 3 * sizeof(double) * (size_t)m->n_vertices);
     memcpy(all->face_vertex, m->face_vertex, 3 * sizeof(int32_t) * (size_t)m->n_faces);
     for (int32_t f = 0; f < m->n_faces; f++) all->face_offset[f + 1] = 3 * f + 3;
+    for (int at = QC_AT_VERTEX; at <= QC_AT_CORNER; at++)
+        assert_int_equal(
+            qc_polygon_mesh_add_attribute(*state, all, "a", at, QC_ATTRIBUTE_DIRECTION, 2, NULL),
+            QC_OK);
     const char *const name[] = {"g a"};
     assert_int_equal(qc__polygon_name_groups(*state, all, 1, name, "mtllib m"), QC_OK);
     const input in = {m, q, all};

@@ -2,6 +2,7 @@
  */
 #include "unit/mesh_io/common.h"
 #include "unit/mesh_io/cube.h"
+#include "unit/mesh_io/rich.h"
 
 static int budget, live;
 static void *resize(void *user, void *p, size_t old_size, size_t new_size) {
@@ -62,16 +63,18 @@ static void test_formats(void **state) {
         cube_bytes(format, &b);
         fail_each(b.data, b.n, CUBE_NAME[format]);
     }
+    fail_each(RICH_PLY, sizeof RICH_PLY - 1, "rich.ply");
 }
 
 static void test_repairs(void **state) {
     (void)state;
     /* polygons, groups, texture coordinates, lines, a seam, a fin, a needle */
-    const char *text = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 2\nv 1 0 -1\nv 1 -1 -2\nv 0 -1 "
-                       "-2\nv 2 -1 -2\nv 1 1 2\n"
-                       "vt 0 0\ng a\ng b\nf 4/1 3/1 2/1 1/1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf "
-                       "1 2 6\nf 6 2 7\nf 1 6 7\n"
-                       "f 1 7 8\nf 2 9 7\nl 1 2 3\nf 4 10 1\n";
+    const char *text =
+        "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 1 2\nv 1 0 -1\nv 1 -1 -2\nv 0 -1 "
+        "-2\nv 2 -1 -2\nv 1 1 2\n"
+        "vt 0 0\nvn 0 0 1\ng a\ng b\nf 4/1/1 3/1 2/1 1/1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\nf "
+        "1 2 6\nf 6 2 7\nf 1 6 7\n"
+        "f 1 7 8\nf 2 9 7\nl 1 2 3\nf 4 10 1\n";
     fail_each(text, strlen(text), "a.obj");
 }
 

@@ -52,7 +52,9 @@ static void test_obj_corners(void **state) {
     assert_string_equal(m->group_name[0], "g a");
     assert_string_equal(m->group_name[1], "g a\nusemtl b");
     const double colour[] = {0, 0, 0, 0, 0, 0, .1, .2, .3, 0, 0, 0};
-    assert_memory_equal(m->colour, colour, sizeof colour);
+    const qc_attribute *a = qc_polygon_mesh_attribute(m, QC_AT_VERTEX, "colour");
+    assert_int_equal(a->width, 3);
+    assert_memory_equal(a->value, colour, sizeof colour);
     assert_int_equal(m->n_lines, 2);
     assert_memory_equal(m->line, line, sizeof line);
     assert_memory_equal(m->face_line, at, sizeof at);
