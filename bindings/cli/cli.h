@@ -133,6 +133,13 @@ int cli_check_writable(const char *path);
 /* Writes text to path through a temporary and a rename; "-" = stdout. */
 int cli_write_text(const char *path, const char *text);
 int cli_write_bytes(const char *path, const char *bytes, size_t n);
+/* Formats of meshes, for an option of kind CLI_CHOICE: numbers are QC_FORMAT_... */
+extern const char *const cli_format_names[];
+#define CLI_FORMAT_OPTION(target)                                                                  \
+    {                                                                                              \
+        "format", 0, CLI_CHOICE, &(target), 0, 0, cli_format_names, "auto|obj|off|ply|ply-ascii",  \
+            "of meshes written; auto: by extension (default)"                                      \
+    }
 /* Reads a mesh; EXIT_INPUT on failure. */
 int cli_read_mesh(cli_session *session, const char *path, qc_polygon_mesh **out);
 

@@ -11,6 +11,7 @@ static const char about[] =
 
 typedef struct settings {
     const char *input, *output, *stats;
+    int format;
     cli_list set, plugin;
     cli_common common;
 } settings;
@@ -73,8 +74,8 @@ static int work(run *r, const settings *s) {
     if (cli_interrupted()) return cli_error(EXIT_INTERRUPTED, "interrupted");
     const double start = cli_seconds();
     const qc_polygon_mesh *quads = qc_bag_latest(r->bag, QC_TYPE_POLYGON_MESH);
-    if (qc_polygon_mesh_write(r->session.ctx, quads, s->output, "quadcover " QC_VERSION_STRING) !=
-        QC_OK)
+    if (qc_polygon_mesh_write_as(r->session.ctx, quads, s->output, s->format,
+                                 "quadcover " QC_VERSION_STRING) != QC_OK)
         return cli_session_error(&r->session, s->output, EXIT_FAILED);
     r->times.write = cli_seconds() - start;
     return s->stats ? write_stats(r, s) : EXIT_DONE;
@@ -87,14 +88,15 @@ int cli_extract(int argc, const char **argv) {
     memset(&s, 0, sizeof s);
     memset(&r, 0, sizeof r);
     const cli_option options[] = {
-        {"output", 'o', CLI_TEXT, &s.output, 0, 0, NULL, "OUT.obj", "the quad mesh"},
+        {"output", 'o', CLI_TEXT, &s.output, 0, 0, NULL, "OUT",
+         "the quad mesh: .obj, .ply or .off"},
+        CLI_FORMAT_OPTION(s.format),
         {"stats", 0, CLI_TEXT, &s.stats, 0, 0, NULL, "S.json", "write statistics"},
         {"set", 0, CLI_LIST, &s.set, 0, 0, NULL, "step.param=value", "set a parameter of a step"},
         {"plugin", 0, CLI_LIST, &s.plugin, 0, 0, NULL, "X.so", "load a plugin"},
         CLI_COMMON_OPTIONS(s.common),
         {NULL, 0, 0, NULL, 0, 0, NULL, NULL, NULL}};
-    int status =
-        cli_parse(argc, argv, options, 1, 1, "UV.obj -o OUT.obj [options]", about, &arguments);
+    int status = cli_parse(argc, argv, options, 1, 1, "UV -o OUT [options]", about, &arguments);
     if (status >= 0) return status;
     s.input = arguments.positional[0];
     status = s.output ? cli_check_writable(s.output)

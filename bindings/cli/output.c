@@ -70,6 +70,8 @@ int cli_write_bytes(const char *path, const char *bytes, size_t n) {
     return fclose(file) == 0 && good ? EXIT_DONE : cannot_write(path, errno);
 }
 
+const char *const cli_format_names[] = {"auto", "obj", "off", "ply", "ply-ascii", NULL};
+
 int cli_read_mesh(cli_session *session, const char *path, qc_polygon_mesh **out) {
     if (qc_polygon_mesh_read(session->ctx, path, out) == QC_OK) return EXIT_DONE;
     return cli_session_error(session, strcmp(path, "-") == 0 ? "stdin" : path, EXIT_INPUT);

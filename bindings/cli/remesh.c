@@ -15,7 +15,7 @@ static const char about[] =
     "that fails is reported and left out.\n\n"
     "Density: --quads N (default 10000), --edge-length L or --edge-length-rel R.\n"
     "--set step.param=value changes any parameter of any step; `quadcover stages` lists them.";
-static const char synopsis[] = "IN -o OUT.obj [options]";
+static const char synopsis[] = "IN -o OUT [options]";
 
 enum { MODE_NONE = 0, MODE_FAST, MODE_RELOCATE, MODE_BEST }; /* none = best */
 static const char *const modes[] = {"", "fast", "relocate", "best", NULL};
@@ -25,7 +25,7 @@ typedef struct settings {
     char *command; /* as given; owned */
     double quads, edge_length, edge_length_rel, sharp;
     bool no_features, strict;
-    int mode;
+    int mode, format;
     long long seed;
     cli_list set, plugin;
     cli_common common;
@@ -45,7 +45,9 @@ typedef struct run {
 static int with_options(settings *s, cli_options_user *use, void *user) {
     const double huge = 1e300, tiny = 1e-300;
     const cli_option options[] = {
-        {"output", 'o', CLI_TEXT, &s->output, 0, 0, NULL, "OUT.obj", "the quad mesh"},
+        {"output", 'o', CLI_TEXT, &s->output, 0, 0, NULL, "OUT",
+         "the quad mesh: .obj, .ply or .off"},
+        CLI_FORMAT_OPTION(s->format),
         {"quads", 0, CLI_REAL, &s->quads, 1, 1e9, NULL, "N", "target number of quads"},
         {"edge-length", 0, CLI_REAL, &s->edge_length, tiny, huge, NULL, "L",
          "target edge length, in the units of the mesh"},
@@ -178,10 +180,12 @@ static int compute(run *r, const settings *s) {
     return EXIT_DONE;
 }
 
-static int write_mesh(run *r, const qc_polygon_mesh *mesh, const char *path, const char *what) {
+static int write_mesh(run *r, const qc_polygon_mesh *mesh, const char *path, int format,
+                      const char *what) {
     if (!path) return EXIT_DONE;
     if (!mesh) return cli_error(EXIT_FAILED, "%s: no step of the pipeline makes %s", path, what);
-    if (qc_polygon_mesh_write(r->session.ctx, mesh, path, "quadcover " QC_VERSION_STRING) != QC_OK)
+    if (qc_polygon_mesh_write_as(r->session.ctx, mesh, path, format,
+                                 "quadcover " QC_VERSION_STRING) != QC_OK)
         return cli_session_error(&r->session, path, EXIT_FAILED);
     return EXIT_DONE;
 }
@@ -236,8 +240,9 @@ static int write_all(run *r, const settings *s) {
     if (cli_interrupted()) return cli_error(EXIT_INTERRUPTED, "interrupted");
     const double start = cli_seconds();
     check_density(r);
-    int status = write_mesh(r, r->result.quads, s->output, "quads");
-    if (status == EXIT_DONE) status = write_mesh(r, r->result.uv, s->uv, "a parameterization");
+    int status = write_mesh(r, r->result.quads, s->output, s->format, "quads");
+    if (status == EXIT_DONE)
+        status = write_mesh(r, r->result.uv, s->uv, s->format, "a parameterization");
     if (status == EXIT_DONE) status = write_field(r, s->save_field);
     r->times.write = cli_seconds() - start;
     return status == EXIT_DONE ? write_figures(r, s) : status;
