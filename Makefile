@@ -8,7 +8,7 @@ JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
 # The one for which setup-debian.sh installs numpy.
 PYTHON ?= $(firstword $(wildcard /usr/bin/python3) python3)
 
-.PHONY: build setup browser demo check bench results corpus gallery format check-format install clean
+.PHONY: build setup browser demo check bench results corpus gallery format check-format install packages clean
 
 build: setup
 	cmake --preset release >/dev/null
@@ -66,6 +66,11 @@ format check-format: setup
 
 install: build
 	cmake --install build --prefix "$(PREFIX)"
+
+# Debian packages: build/packages/*.deb (docs/packages.md).
+packages: build
+	rm -f build/packages/*.deb
+	cd build && cpack
 
 clean:
 	rm -rf build build-debug build-clang build-asan-ubsan build-tsan demo

@@ -3,7 +3,7 @@
 # one), and those named as arguments. Needs root or sudo only when something is missing; otherwise it returns at once.
 set -eu
 
-packages="gcc g++ make cmake ninja-build pkg-config libopenblas-dev liblapacke-dev libsuitesparse-dev
+packages="gcc g++ make cmake ninja-build pkg-config dpkg-dev file libopenblas-dev liblapacke-dev libsuitesparse-dev
 libjansson-dev libpopt-dev zlib1g-dev libcmocka-dev clang libclang-rt-14-dev clang-format libmumps-dev libmumps-seq-dev openmpi-bin
 libembree-dev libosd-dev python3-dev python3-pip python3-venv python3-setuptools python3-wheel python3-cffi python3-numpy python3-scipy
 python3-distributed $*"
