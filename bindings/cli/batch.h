@@ -15,6 +15,9 @@ double batch_number(const json_t *object, const char *key);
 /* format as printf; free() it. NULL: out of memory. */
 char *batch_format(const char *format, ...) CLI_PRINTF(1, 2);
 
+/* Mixes bytes into a hash, which begins as 0. */
+uint64_t batch_hash(uint64_t hash, const void *data, size_t n);
+
 /* --- which meshes ---------------------------------------------------------------------------- */
 
 /* Paths of meshes: those in a folder and below it, sorted (hidden ones and `skip` left out), those
@@ -94,8 +97,8 @@ char *batch_part_path(const json_t *task);
 /* The line belongs to the task as it is now, and what it made is there. */
 bool batch_finished(const json_t *task, const json_t *line);
 bool batch_line_done(const json_t *line);
-/* Removes what an earlier run of a task which fails by now has left. */
-void batch_remove_outputs(const json_t *task);
+/* Removes what earlier runs of a task have left and this one has not made. */
+void batch_tidy(const json_t *task, bool done);
 
 /* --- pictures -------------------------------------------------------------------------------- */
 

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <limits.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -126,30 +127,31 @@ int batch_find(const char *source, const char *skip, json_t **out) {
     return status;
 }
 
-/* FNV-1a, 64 bits. */
-static uint64_t hash(const char *text) {
-    uint64_t h = 14695981039346656037u;
-    for (; *text; text++) h = (h ^ (unsigned char)*text) * 1099511628211u;
-    return h;
-}
-
 enum { FILE_NAME, PARENT, PARENT_AND_EXTENSION, HASH };
+
+/* A file name has room for 255 bytes; no letter is torn. */
+static int shorten(const char *text, ptrdiff_t length) {
+    ptrdiff_t n = length > 60 ? 60 : length;
+    while (n > 0 && n < length && ((unsigned char)text[n] & 0xc0) == 0x80) n--;
+    return (int)n;
+}
 
 static char *name_at(const char *path, int level) {
     const char *base = base_name(path), *ext = extension(path);
-    const int stem = (int)(ext - base);
+    const int stem = shorten(base, ext - base);
     const char *parent = base > path ? base - 1 : base, *end = parent;
     while (parent > path && parent[-1] != '/') parent--;
-    const int length = (int)(end - parent);
+    const int length = shorten(parent, end - parent);
     if (level == FILE_NAME) return batch_format("%.*s", stem, base);
-    if (level == HASH) return batch_format("%.*s-%016" PRIx64, stem, base, hash(path));
-    return batch_format("%.*s%s%.*s%s%s", length, parent, length ? "-" : "", stem, base,
-                        level == PARENT || !*ext ? "" : "-",
-                        level == PARENT || !*ext ? "" : ext + 1);
+    if (level == HASH)
+        return batch_format("%.*s-%016" PRIx64, stem, base, batch_hash(0, path, strlen(path)));
+    const int tail = level == PARENT || !*ext ? 0 : shorten(ext + 1, (ptrdiff_t)strlen(ext + 1));
+    return batch_format("%.*s%s%.*s%s%.*s", length, parent, length ? "-" : "", stem, base,
+                        tail ? "-" : "", tail, tail ? ext + 1 : "");
 }
 
 /* Names all meshes at their levels and raises those which share one. true: one was raised. */
-static bool raise(json_t *meshes, int *level) {
+static bool raise_levels(json_t *meshes, int *level) {
     json_t *count = json_object(), *mesh;
     size_t i;
     bool raised = false;
@@ -175,7 +177,7 @@ static bool raise(json_t *meshes, int *level) {
 int batch_name(json_t *meshes) {
     int *level = calloc(json_array_size(meshes), sizeof *level);
     if (!level) return cli_error(EXIT_FAILED, "out of memory");
-    while (raise(meshes, level)) continue;
+    while (raise_levels(meshes, level)) continue;
     free(level);
     return EXIT_DONE;
 }

@@ -28,13 +28,28 @@ bool batch_finished(const json_t *task, const json_t *line) {
     return true;
 }
 
-void batch_remove_outputs(const json_t *task) {
+static bool is_output(const json_t *task, const char *path) {
     json_t *output;
     size_t i;
-    json_array_foreach(json_object_get(task, "outputs"), i, output)
-        unlink(json_string_value(output));
-    char *picture = batch_picture_path(batch_text(task, "folder"), batch_text(task, "name"));
-    if (picture) unlink(picture);
+    json_array_foreach(json_object_get(task, "outputs"), i,
+                       output) if (strcmp(json_string_value(output), path) == 0) return true;
+    return false;
+}
+
+void batch_tidy(const json_t *task, bool done) {
+    static const char *const kind[][2] = {{"", ".obj"},
+                                          {"", ".json"},
+                                          {"uv/", ".obj"},
+                                          {"field/", ".rawfield"},
+                                          {"report/", ".html"}};
+    const char *folder = batch_text(task, "folder"), *name = batch_text(task, "name");
+    for (size_t i = 0; i < sizeof kind / sizeof *kind; i++) {
+        char *path = batch_format("%s/%s%s%s", folder, kind[i][0], name, kind[i][1]);
+        if (path && !(done && is_output(task, path))) unlink(path);
+        free(path);
+    }
+    char *picture = batch_picture_path(folder, name);
+    if (picture && !done) unlink(picture);
     free(picture);
 }
 

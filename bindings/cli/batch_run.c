@@ -30,15 +30,20 @@ static int jobs(const batch *b, size_t n) {
 }
 
 /* Makes and locks the folder: two batches would write the same files. */
-static int open_folder(batch *b, const char *path, bool exclusive) {
+static int open_folder(batch *b, const char *path) {
     if (mkdir(path, 0777) != 0 && errno != EEXIST)
         return cli_error(EXIT_FAILED, "%s: cannot make the folder: %s", path, strerror(errno));
     b->folder = realpath(path, NULL);
     b->lock = b->folder ? open(b->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
     if (b->lock < 0) return cli_error(EXIT_FAILED, "%s: %s", path, strerror(errno));
-    if (exclusive && flock(b->lock, LOCK_EX | LOCK_NB) != 0)
+    if (flock(b->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
         return cli_error(EXIT_FAILED, "%s: another batch is at work in it", path);
     return EXIT_DONE;
+}
+
+static void settle(const json_t *task, const json_t *line) {
+    batch_tidy(task, batch_line_done(line));
+    if (batch_line_done(line)) batch_draw(task);
 }
 
 /* Wrong usage is that of all meshes: nothing is recorded. */
@@ -50,12 +55,8 @@ static int on_line(void *user, const json_t *task, json_t *line) {
     const int status = batch_results_append(b->folder, b->results, line);
     b->ended++;
     b->bytes_ended += batch_number(line, "bytes");
-    if (batch_line_done(line))
-        batch_draw(task);
-    else {
-        json_array_append(b->failed, line);
-        batch_remove_outputs(task);
-    }
+    settle(task, line);
+    if (!batch_line_done(line)) json_array_append(b->failed, line);
     batch_show(b, line);
     return status;
 }
@@ -148,7 +149,7 @@ static int write_tasks(batch *b) {
 
 static int run_all(batch *b) {
     const batch_settings *s = b->settings;
-    int status = open_folder(b, s->output, true);
+    int status = open_folder(b, s->output);
     if (status == EXIT_DONE) status = make_tasks(b);
     if (status == EXIT_DONE && !(b->results = batch_results_open(b->folder))) status = EXIT_FAILED;
     if (status != EXIT_DONE) return status;
@@ -163,10 +164,7 @@ static int on_part(void *user, const json_t *task, json_t *line) {
     int status =
         path && text ? cli_write_text(path, text) : cli_error(EXIT_FAILED, "out of memory");
     if (text) printf("%s\n", text);
-    if (batch_line_done(line))
-        batch_draw(task);
-    else
-        batch_remove_outputs(task);
+    settle(task, line);
     if (status == EXIT_DONE && !batch_line_done(line))
         status = cli_error(EXIT_FAILED, "%s: %s: %s", batch_text(line, "name"),
                            batch_text(line, "status"), batch_text(line, "message"));
@@ -196,7 +194,7 @@ static int run_task(batch *b) {
 static int collect(batch *b) {
     json_t *task;
     size_t i;
-    int status = open_folder(b, batch_text(json_array_get(b->tasks, 0), "folder"), true);
+    int status = open_folder(b, batch_text(json_array_get(b->tasks, 0), "folder"));
     if (status == EXIT_DONE && !(b->results = batch_results_open(b->folder))) status = EXIT_FAILED;
     if (status != EXIT_DONE) return status;
     json_array_foreach(b->tasks, i, task) {

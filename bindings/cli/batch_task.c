@@ -28,7 +28,8 @@ char *batch_format(const char *format, ...) {
     return text;
 }
 
-static uint64_t mix(uint64_t h, const void *data, size_t n) { /* FNV-1a */
+uint64_t batch_hash(uint64_t h, const void *data, size_t n) {
+    h ^= 14695981039346656037u; /* FNV-1a; its basis at the beginning of each part */
     for (const unsigned char *byte = data; n > 0; n--, byte++) h = (h ^ *byte) * 1099511628211u;
     return h;
 }
@@ -39,23 +40,23 @@ static uint64_t mix_file(uint64_t h, const char *path) {
     if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return h;
     const int64_t state[] = {(int64_t)info.st_size, (int64_t)info.st_mtim.tv_sec,
                              (int64_t)info.st_mtim.tv_nsec};
-    return mix(h, state, sizeof state);
+    return batch_hash(h, state, sizeof state);
 }
 
 /* What the result depends on: version, input, options and the files they name. The number of
  * threads and the limits change no result. */
 static uint64_t fingerprint(const char *input, const json_t *options, const batch_job *job) {
     const bool products[] = {job->uv, job->save_field, job->report};
-    uint64_t h = mix(14695981039346656037u, qc_version(), strlen(qc_version()) + 1);
+    uint64_t h = batch_hash(0, qc_version(), strlen(qc_version()) + 1);
     size_t i;
     json_t *word;
-    h = mix_file(mix(h, input, strlen(input) + 1), input);
-    h = mix(h, products, sizeof products);
+    h = mix_file(batch_hash(h, input, strlen(input) + 1), input);
+    h = batch_hash(h, products, sizeof products);
     json_array_foreach(options, i, word) {
         const char *text = json_string_value(word), *first = strchr(text, '='),
                    *last = strrchr(text, '=');
         if (strncmp(text, "--threads=", 10) == 0) continue;
-        h = mix(h, text, strlen(text) + 1);
+        h = batch_hash(h, text, strlen(text) + 1);
         if (first) h = mix_file(h, first + 1);
         if (last != first) h = mix_file(h, last + 1); /* --set=step.file=... */
     }

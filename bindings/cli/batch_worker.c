@@ -40,7 +40,8 @@ static bool make_work(batch_worker *w) {
                            batch_text(w->task, "name"));
     if (!w->work || !make_parents(w->work) || !mkdtemp(w->work)) return false;
     w->lock = open(w->work, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    return w->lock >= 0 && flock(w->lock, LOCK_EX | LOCK_NB) == 0;
+    if (w->lock >= 0) flock(w->lock, LOCK_EX | LOCK_NB);
+    return w->lock >= 0;
 }
 
 /* Where the process writes output i. */

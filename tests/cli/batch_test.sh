@@ -63,10 +63,19 @@ once listed a-x b-x 'with space'
 "$quadcover" batch - -o listed --quads 200 --mode fast --progress plain <list.txt 2>err || fail stdin
 [ -s err ] && fail "a list from stdin is another one: $(cat err)"
 
+# Long names share their beginning.
+long=$(printf 'm%.0s' $(seq 120))
+mkdir long
+mesh long/${long}1.obj 500
+mesh long/${long}2.obj 500
+run 0 batch long -o named --quads 200 --mode fast
+[ "$(ls named/*.obj | wc -l)" -eq 2 ] || fail "long names: $(ls named)"
+
 # {in} and {name}: a field for each mesh.
 run 0 batch in/b/x.obj -o fields --quads 200 --mode fast --save-field
 cp fields/field/x.rawfield in/b/x.rawfield
 run 0 batch in/b/x.obj -o fields --quads 200 --mode fast --field '{in}.rawfield'
+[ -e fields/field/x.rawfield ] && fail 'a file of other options beside a result'
 grep -q '"exit":0' fields/results.jsonl || fail 'no field'
 
 # Wrong usage costs nothing.

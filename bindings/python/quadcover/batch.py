@@ -54,8 +54,6 @@ def run(tasks_path, client, program=None, progress=None):
 
 
 def main(arguments=None):
-    from distributed import Client
-
     parser = argparse.ArgumentParser(prog="quadcover.batch", description="Runs the tasks of quadcover batch on Dask.")
     parser.add_argument("tasks", help="what quadcover batch --tasks has written")
     where = parser.add_mutually_exclusive_group(required=True)
@@ -63,6 +61,10 @@ def main(arguments=None):
     where.add_argument("--scheduler-file", help="file which dask scheduler --scheduler-file has written")
     parser.add_argument("--program", help="path of quadcover on the workers")
     given = parser.parse_args(arguments)
+    try:
+        from distributed import Client
+    except ImportError:
+        parser.error("needs the package distributed")
 
     def show(done, total, line):
         text = f"{line['name']}: {line['status']}, {line['seconds']:.1f} s" if line else "a task was lost"
