@@ -94,8 +94,13 @@ int batch_results_append(const char *folder, json_t *results, json_t *line);
 int batch_results_write(const char *folder, const json_t *results);
 /* The line of one task where no collector runs. */
 char *batch_part_path(const json_t *task);
-/* The line belongs to the task as it is now, and what it made is there. */
-bool batch_finished(const json_t *task, const json_t *line);
+/* The line belongs to the task as it is now. line may be NULL. */
+bool batch_current(const json_t *task, const json_t *line);
+/* It does, is one of success, and what it made is there. */
+bool batch_succeeded(const json_t *task, const json_t *line);
+/* The line of a success which nobody has collected yet; and of any. NULL: none. */
+json_t *batch_part(const json_t *task);
+json_t *batch_known(const json_t *task);
 bool batch_line_done(const json_t *line);
 /* Removes what earlier runs of a task have left and this one has not made. */
 void batch_tidy(const json_t *task, bool done);

@@ -18,14 +18,39 @@ char *batch_part_path(const json_t *task) {
     return batch_format("%s/.batch/%s.json", batch_text(task, "folder"), batch_text(task, "name"));
 }
 
-bool batch_finished(const json_t *task, const json_t *line) {
+bool batch_current(const json_t *task, const json_t *line) {
+    return line && strcmp(batch_text(task, "key"), batch_text(line, "key")) == 0;
+}
+
+bool batch_succeeded(const json_t *task, const json_t *line) {
     json_t *output;
     size_t i;
-    if (!line || strcmp(batch_text(task, "key"), batch_text(line, "key")) != 0) return false;
-    if (!batch_line_done(line)) return true;
+    if (!batch_current(task, line) || !batch_line_done(line)) return false;
     json_array_foreach(json_object_get(task, "outputs"), i,
                        output) if (access(json_string_value(output), R_OK) != 0) return false;
     return true;
+}
+
+json_t *batch_part(const json_t *task) {
+    char *path = batch_part_path(task);
+    json_t *line = path ? json_load_file(path, 0, NULL) : NULL;
+    free(path);
+    if (batch_succeeded(task, line)) return line;
+    json_decref(line);
+    return NULL;
+}
+
+json_t *batch_known(const json_t *task) {
+    json_t *known = batch_part(task), *line;
+    char *path = batch_format("%s/results.jsonl", batch_text(task, "folder"));
+    json_t *lines = !known && path ? batch_read_lines(path) : NULL;
+    size_t i;
+    json_array_foreach(lines, i,
+                       line) if (strcmp(batch_text(line, "name"), batch_text(task, "name")) == 0 &&
+                                 !known && batch_succeeded(task, line)) known = json_incref(line);
+    json_decref(lines);
+    free(path);
+    return known;
 }
 
 static bool is_output(const json_t *task, const char *path) {
@@ -57,8 +82,8 @@ void batch_tidy(const json_t *task, bool done) {
 static void merge(json_t *results, json_t *line) {
     const char *name = batch_text(line, "name");
     const json_t *known = json_object_get(results, name);
-    const bool same = known && strcmp(batch_text(known, "key"), batch_text(line, "key")) == 0;
-    if (*name && !(same && batch_line_done(known))) json_object_set(results, name, line);
+    if (*name && !(batch_current(line, known) && batch_line_done(known)))
+        json_object_set(results, name, line);
 }
 
 typedef void part_visitor(json_t *results, const char *path);

@@ -83,10 +83,10 @@ static json_t *choose(const batch *b) {
     size_t i;
     json_array_foreach(b->tasks, i, task) {
         json_t *line = json_object_get(b->results, batch_text(task, "name"));
-        const bool finished = !b->settings->again && batch_finished(task, line);
-        if (finished && !batch_line_done(line) && b->settings->skip_failed)
+        const bool current = !b->settings->again && batch_current(task, line);
+        if (current && !batch_line_done(line) && b->settings->skip_failed)
             json_array_append(b->failed, line);
-        else if (!finished || !batch_line_done(line))
+        else if (!current || !batch_succeeded(task, line))
             json_array_append(pending, task);
     }
     return pending;
@@ -158,18 +158,28 @@ static int run_all(batch *b) {
 }
 
 /* The line of a task which runs without a collector waits in a file of its own. */
-static int on_part(void *user, const json_t *task, json_t *line) {
-    (void)user;
+static int keep_part(const json_t *task, const json_t *line) {
     char *path = batch_part_path(task), *text = json_dumps(line, JSON_COMPACT);
-    int status =
+    const int status =
         path && text ? cli_write_text(path, text) : cli_error(EXIT_FAILED, "out of memory");
-    if (text) printf("%s\n", text);
-    settle(task, line);
-    if (status == EXIT_DONE && !batch_line_done(line))
-        status = cli_error(EXIT_FAILED, "%s: %s: %s", batch_text(line, "name"),
-                           batch_text(line, "status"), batch_text(line, "message"));
     free(path);
     free(text);
+    settle(task, line);
+    return status;
+}
+
+/* A failure here is none where the same task has succeeded elsewhere. */
+static int on_part(void *user, const json_t *task, json_t *line) {
+    (void)user;
+    json_t *known = batch_line_done(line) ? NULL : batch_known(task);
+    int status = known ? EXIT_DONE : keep_part(task, line);
+    char *text = json_dumps(known ? known : line, JSON_COMPACT);
+    if (text) printf("%s\n", text);
+    if (status == EXIT_DONE && !known && !batch_line_done(line))
+        status = cli_error(EXIT_FAILED, "%s: %s: %s", batch_text(line, "name"),
+                           batch_text(line, "status"), batch_text(line, "message"));
+    free(text);
+    json_decref(known);
     return status;
 }
 
@@ -181,12 +191,9 @@ static int run_task(batch *b) {
                          json_array_size(b->tasks));
     const batch_events events = {on_part, NULL, b};
     b->pending = json_pack("[O]", task);
-    char *path = batch_part_path(task);
-    json_t *line = path ? json_load_file(path, 0, NULL) : NULL;
-    free(path);
-    const bool finished = line && batch_line_done(line) && batch_finished(task, line);
+    json_t *line = batch_part(task);
     const int status =
-        finished ? on_part(b, task, line) : batch_run(b->pending, 1, b->program, &events);
+        line ? on_part(b, task, line) : batch_run(b->pending, 1, b->program, &events);
     json_decref(line);
     return status;
 }
@@ -199,8 +206,7 @@ static int collect(batch *b) {
     if (status != EXIT_DONE) return status;
     json_array_foreach(b->tasks, i, task) {
         json_t *line = json_object_get(b->results, batch_text(task, "name"));
-        if (!line || !batch_line_done(line) || !batch_finished(task, line))
-            json_array_append(b->failed, task);
+        if (!batch_succeeded(task, line)) json_array_append(b->failed, task);
     }
     batch_remove_leftovers(b->folder);
     status = batch_write_summary(b->folder, b->tasks, b->results);

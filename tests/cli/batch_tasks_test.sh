@@ -35,6 +35,14 @@ once res bad m200 m300 m400 m500 m600
 run 2 batch --tasks tasks.jsonl --run-task 7
 error_says '1 to 6'
 
+# A task which has succeeded fails when an engine runs it once more: the success stays.
+sed 's/--mode=fast/--mode=fats/' tasks.jsonl >fails.jsonl
+run 0 batch --tasks fails.jsonl --run-task 4
+out_says '"name":"m400".*"status":"done"'
+run 1 batch --tasks tasks.jsonl --collect
+once res bad m200 m300 m400 m500 m600
+[ "$(ls -i res/m400.obj)" = "$first" ] || fail 'a success was lost'
+
 # The same bytes here; a local batch goes on from there.
 run 1 batch 'in dir' -o local --quads 150 --mode fast
 for n in 200 300 400 500 600; do same res/m$n.obj local/m$n.obj 'by tasks or here'; done
