@@ -24,7 +24,7 @@ typedef struct settings {
     const char *input, *output, *field, *stroke_rays, *save_field, *uv, *pipeline, *stats, *report;
     char *command; /* as given; owned */
     double quads, edge_length, edge_length_rel, sharp;
-    bool no_features, strict;
+    bool no_features, keep_materials, strict;
     int mode, format;
     long long seed;
     cli_list set, plugin;
@@ -65,6 +65,8 @@ static int with_options(settings *s, cli_options_user *use, void *user) {
          "align to creases sharper than this angle (default 35)"},
         {"no-features", 0, CLI_FLAG, &s->no_features, 0, 0, NULL, NULL,
          "align neither to creases nor to boundaries"},
+        {"keep-materials", 0, CLI_FLAG, &s->keep_materials, 0, 0, NULL, NULL,
+         "no quad crosses a border between groups or materials; makes all features hard"},
         {"uv", 0, CLI_TEXT, &s->uv, 0, 0, NULL, "OUT_UV.obj",
          "write the parameterization, one vt per corner"},
         {"pipeline", 0, CLI_TEXT, &s->pipeline, 0, 0, NULL, "P.json", "run these stages"},
@@ -138,10 +140,14 @@ static int check_settings(const settings *s) {
         return cli_error(EXIT_USAGE, "--pipeline brings its own steps; leave --mode out");
     if ((s->quads > 0) + (s->edge_length > 0) + (s->edge_length_rel > 0) > 1)
         return cli_error(EXIT_USAGE, "give one of --quads, --edge-length and --edge-length-rel");
+    if (s->no_features && s->keep_materials)
+        return cli_error(EXIT_USAGE,
+                         "--keep-materials and --no-features exclude each other; --sharp 180 "
+                         "leaves creases out");
     if (s->no_features && s->sharp > 0)
         return cli_error(EXIT_USAGE, "--sharp and --no-features exclude each other");
     const bool step_flags = s->quads > 0 || s->edge_length > 0 || s->edge_length_rel > 0 ||
-                            s->sharp > 0 || s->no_features || s->field;
+                            s->sharp > 0 || s->no_features || s->keep_materials || s->field;
     if (s->pipeline && step_flags)
         return cli_error(EXIT_USAGE,
                          "--pipeline brings its own density, features and field; change "
@@ -163,6 +169,7 @@ static int build_pipeline(run *r, const settings *s) {
     options.edge_length_rel = s->edge_length_rel;
     options.crease_angle = s->no_features ? -1 : s->sharp;
     options.field_path = s->field;
+    options.keep_groups = s->keep_materials;
     options.seed = (uint64_t)s->seed;
     options.mode = mode_of(s) - MODE_FAST + QC_MODE_FAST;
     const int status = cli_registry(r->session.ctx, &s->plugin, &r->registry);

@@ -8,6 +8,12 @@
 #include "sdk/base/internal.h"
 #include "sdk/mesh/internal.h"
 
+/* qc_quads_transfer which also counts the quads with samples in more than one group; *first: the
+ * lowest of them, -1 = none. */
+qc_status qc__quads_transfer(qc_ctx *ctx, const qc_polygon_mesh *input, const qc_mesh *mesh,
+                             const qc_polygon_mesh *quads, qc_polygon_mesh **out, int32_t *n_mixed,
+                             int32_t *first);
+
 /* --- neighbours ------------------------------------------------------------------------------ */
 
 /* At most; members of the last class may share faces. */

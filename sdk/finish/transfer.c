@@ -53,13 +53,14 @@ static int most_common(const double *value[SAMPLES], int32_t width) {
     return best;
 }
 
-static int32_t quad_group(const qc__transfer *t, const int32_t face[SAMPLES]) {
+static int32_t quad_group(const qc__transfer *t, const int32_t face[SAMPLES], uint8_t *mixed) {
     double group[SAMPLES];
     const double *value[SAMPLES];
     for (int k = 0; k < SAMPLES; k++) {
         group[k] = face[k] < 0 ? 0 : t->input->face_group[face[k]];
         value[k] = &group[k];
     }
+    for (int k = 1; k < SAMPLES; k++) *mixed |= group[k] != group[0];
     return (int32_t)group[most_common(value, 1)];
 }
 
@@ -125,7 +126,7 @@ static void visit_face(const qc__transfer *t, int64_t f, int32_t *from) {
     }
     if (!t->group && !has(t, QC_AT_FACE)) return;
     sample_faces(t, f, centre, &middle, face);
-    if (t->group) t->group[f] = quad_group(t, face);
+    if (t->group) t->group[f] = quad_group(t, face, &t->mixed[f]);
     for (int32_t i = 0; i < t->n_attributes; i++)
         if (t->attribute[i].to && t->attribute[i].at == QC_AT_FACE)
             average(&t->attribute[i], face, f);
@@ -157,7 +158,8 @@ static qc_status prepare(qc_ctx *ctx, qc__transfer *t) {
     qc_status status = QC_OK;
     if (in->face_group && !q->face_group) {
         t->group = q->face_group = QC__ZERO(ctx, int32_t, q->n_faces);
-        if (!t->group) return QC_ERR_NOMEM;
+        t->mixed = QC__ZERO(ctx, uint8_t, q->n_faces);
+        if (!t->group || !t->mixed) return QC_ERR_NOMEM;
         if (in->group_name)
             status = qc__polygon_name_groups(ctx, q, in->n_groups,
                                              (const char *const *)in->group_name, in->materials);
@@ -179,8 +181,9 @@ static qc_status fill(qc_ctx *ctx, qc__transfer *t) {
                                     q->corner_uv, q->uv, &q->n_uvs);
 }
 
-qc_status qc_quads_transfer(qc_ctx *ctx, const qc_polygon_mesh *input, const qc_mesh *mesh,
-                            const qc_polygon_mesh *quads, qc_polygon_mesh **out) {
+qc_status qc__quads_transfer(qc_ctx *ctx, const qc_polygon_mesh *input, const qc_mesh *mesh,
+                             const qc_polygon_mesh *quads, qc_polygon_mesh **out, int32_t *n_mixed,
+                             int32_t *first) {
     qc__transfer t = {.input = input, .mesh = mesh, .closest = &qc_closest_point_builtin};
     for (int32_t f = 0; f < quads->n_faces; f++)
         if (quads->face_offset[f + 1] - quads->face_offset[f] != 4)
@@ -188,7 +191,15 @@ qc_status qc_quads_transfer(qc_ctx *ctx, const qc_polygon_mesh *input, const qc_
     qc_status status = qc_polygon_mesh_merge(ctx, 1, &quads, NULL, &t.quads);
     if (status == QC_OK) status = prepare(ctx, &t);
     if (status == QC_OK) status = fill(ctx, &t);
+    *n_mixed = 0;
+    *first = -1;
+    for (int32_t f = quads->n_faces; status == QC_OK && t.mixed && f-- > 0;)
+        if (t.mixed[f]) {
+            ++*n_mixed;
+            *first = f;
+        }
     if (t.tree) t.closest->destroy(t.tree);
+    qc__free(t.mixed);
     qc__free(t.chart);
     qc__free(t.attribute);
     if (status == QC_OK)
@@ -196,4 +207,10 @@ qc_status qc_quads_transfer(qc_ctx *ctx, const qc_polygon_mesh *input, const qc_
     else
         qc_object_release(t.quads);
     return status;
+}
+
+qc_status qc_quads_transfer(qc_ctx *ctx, const qc_polygon_mesh *input, const qc_mesh *mesh,
+                            const qc_polygon_mesh *quads, qc_polygon_mesh **out) {
+    int32_t n_mixed, first;
+    return qc__quads_transfer(ctx, input, mesh, quads, out, &n_mixed, &first);
 }

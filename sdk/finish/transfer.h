@@ -27,6 +27,7 @@ typedef struct qc__transfer {
     qc_closest_tree *tree;
     int32_t *chart; /* n_uvs of the input: parent in its chart (union-find); NULL = no uvs */
     int32_t *group; /* n_faces, NULL = no groups */
+    uint8_t *mixed; /* n_faces: 1 where the samples of a quad are of more than one group */
     qc__transferred *attribute;
     int32_t n_attributes;
 } qc__transfer;

@@ -78,6 +78,17 @@ static qc_status set_seeds(qc_pipeline *pipeline, uint64_t seed) {
     return QC_OK;
 }
 
+/* Borders of groups become hard features. */
+static qc_status keep_groups(qc_ctx *ctx, qc_pipeline *pipeline,
+                             const qc_default_pipeline_options *o) {
+    if (o->crease_angle < 0)
+        return qc__fail(ctx, QC_ERR_ARGUMENT, -1,
+                        "borders of groups are features: leave features on, with a crease angle of "
+                        "180 for borders and boundaries only");
+    const qc_status status = qc_pipeline_set(pipeline, "features", "groups", "true");
+    return status == QC_OK ? qc_pipeline_set(pipeline, "features", "hard", "true") : status;
+}
+
 static qc_status fill(qc_ctx *ctx, qc_pipeline *pipeline, const qc_default_pipeline_options *o) {
     qc_status status = APPEND(pipeline, before_field);
     if (status == QC_OK && o->crease_angle >= 0) status = APPEND(pipeline, feature_steps);
@@ -92,6 +103,7 @@ static qc_status fill(qc_ctx *ctx, qc_pipeline *pipeline, const qc_default_pipel
         status = qc_pipeline_set(pipeline, "field", "file", o->field_path);
     if (status == QC_OK && o->crease_angle > 0)
         status = set_real(pipeline, "features", "angle", o->crease_angle);
+    if (status == QC_OK && o->keep_groups) status = keep_groups(ctx, pipeline, o);
     if (status == QC_OK && o->seed != 0) status = set_seeds(pipeline, o->seed);
     return status;
 }

@@ -1,8 +1,7 @@
 /* qc_remesh: a pipeline run once on the input and then once per connected component. */
 #include <string.h>
 
-#include <qc/finish.h>
-
+#include "sdk/finish/internal.h"
 #include "sdk/remesh/internal.h"
 
 /* Share of the progress bar for the steps on the whole input. */
@@ -138,17 +137,39 @@ static qc_status run_whole(job *j, const qc_polygon_mesh *input) {
     return qc__parts_create(j->ctx, mesh, &j->parts);
 }
 
+/* Whether borders of groups are hard features of some step. */
+static bool borders_are_hard(const qc_pipeline *pipeline) {
+    for (uint32_t i = 0; i < qc_pipeline_count(pipeline); i++) {
+        const char *step = qc_pipeline_step_name(pipeline, i);
+        if (strcmp(qc_pipeline_step_stage(pipeline, i)->id, "qc.features") == 0 &&
+            strcmp(qc_pipeline_get(pipeline, step, "groups"), "true") == 0 &&
+            strcmp(qc_pipeline_get(pipeline, step, "hard"), "true") == 0)
+            return true;
+    }
+    return false;
+}
+
+static qc_status warn_mixed(job *j, const qc_polygon_mesh *quads, int32_t n, int32_t first) {
+    if (n == 0 || !borders_are_hard(j->pipeline)) return QC_OK;
+    const double *x = quads->position + 3 * (int64_t)quads->face_vertex[4 * (int64_t)first];
+    return qc__warn(j->ctx, j->result,
+                    "%d quads cross a border between groups, the first is face %d at (%g, %g, %g); "
+                    "ask for more quads, or see the warnings about features",
+                    (int)n, (int)first, x[0], x[1], x[2]);
+}
+
 /* Gives the quads the attributes, groups and uvs of the input. */
 static qc_status keep_attributes(job *j, const qc_polygon_mesh *input) {
     qc_polygon_mesh *quads = NULL;
     if (!j->result->quads || (input->n_attributes == 0 && !input->face_group && !input->uv))
         return QC_OK;
-    const qc_status status =
-        qc_quads_transfer(j->ctx, input, j->parts.mesh, j->result->quads, &quads);
+    int32_t n_mixed = 0, first = -1;
+    const qc_status status = qc__quads_transfer(j->ctx, input, j->parts.mesh, j->result->quads,
+                                                &quads, &n_mixed, &first);
     if (status != QC_OK) return status;
     qc_object_release(j->result->quads);
     j->result->quads = quads;
-    return QC_OK;
+    return warn_mixed(j, quads, n_mixed, first);
 }
 
 static qc_status run_job(job *j, const qc_polygon_mesh *input) {

@@ -29,9 +29,11 @@ typedef struct qc_default_pipeline_options {
     const char *field_path; /* .rawfield or .rosy to use instead of a computed field; NULL = none */
     uint64_t seed;          /* of stages which have one; 0 = their default */
     int32_t mode;           /* QC_MODE_...: optimisation of the branch points */
+    int32_t keep_groups;    /* 1: borders of groups and materials are hard features, so that no quad
+                               crosses them; with features only (crease_angle >= 0) */
 } qc_default_pipeline_options;
 #define QC_DEFAULT_PIPELINE_OPTIONS_INIT                                                           \
-    { sizeof(qc_default_pipeline_options), 0.0, 0.0, 0.0, 0.0, NULL, 0, QC_MODE_FAST }
+    { sizeof(qc_default_pipeline_options), 0.0, 0.0, 0.0, 0.0, NULL, 0, QC_MODE_FAST, 0 }
 
 /* repair, size, features, refine, curvature and smooth (or field, when a file is given), matching,
  * cancel, curl and balance (as `mode` says), split, open, hodge, round, untangle, extract, finish,
@@ -68,8 +70,9 @@ typedef struct qc_remesh_result {
  * is shared by area, a relative edge length is made absolute once (parameters of the steps of stage
  * qc.size). A component that fails becomes a warning which names it, the stage and the reason,
  * unless strict or unless all fail; so does one whose quads are not a manifold of quads with its
- * number of boundary loops and its Euler characteristic. Errors: those of the stages
- * (qc_error.stage = the step); FAILED for such quads; CANCELLED. */
+ * number of boundary loops and its Euler characteristic. Where borders of groups are hard features
+ * (qc.features: `groups`, `hard`) a warning names quads which cross one. Errors: those of the
+ * stages (qc_error.stage = the step); FAILED for such quads; CANCELLED. */
 QC_API qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_mesh *input,
                            const qc_remesh_options *options, qc_remesh_result *result);
 /* Releases all members and zeroes the struct. NULL is fine. */
