@@ -53,7 +53,8 @@ static int measure(cli_session *session, const settings *s, figures *out) {
 
 static int print_json(const figures *f) {
     const qc_polygon_topology *t = &f->topology;
-    const cli_figures r = cli_report_figures(f->report);
+    qc_figures r;
+    qc_report_figures(f->report, &r);
     json_t *root = json_pack(
         "{s:b,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:i,s:f,s:f,s:f}", "valid",
         f->valid, "vertices", (int)f->report->quads.vertices, "faces", (int)f->report->quads.faces,
@@ -78,7 +79,8 @@ static int print_json(const figures *f) {
 
 static void print_text(const figures *f) {
     const qc_polygon_topology *t = &f->topology;
-    const cli_figures r = cli_report_figures(f->report);
+    qc_figures r;
+    qc_report_figures(f->report, &r);
     printf("vertices %d, faces %d, not quads %d, irregular %d\n", (int)f->report->quads.vertices,
            (int)f->report->quads.faces, (int)t->non_quads, (int)t->irregular);
     printf("components %d, boundary loops %d, Euler characteristic %d\n", (int)t->components,

@@ -170,21 +170,13 @@ int cli_pipeline(qc_ctx *ctx, qc_registry *registry, const char *file,
 
 /* --- figures ------------------------------------------------------------------------------- */
 
-typedef struct cli_times {
-    double read, write, total;
-} cli_times;
-/* The statistics of docs/files.md as JSON text; free() it. pipeline may be NULL. */
-char *cli_stats_json(const qc_report *report, const qc_pipeline *pipeline, const char *input,
-                     const char *mode, const cli_times *times, int n_warnings,
-                     const char *const *warnings);
-/* The page of --report; free() it. stats: the text of cli_stats_json. NULL: it cannot be made. */
+/* The statistics with the warnings and the time of the session; stats has the other times. False
+ * after an error of the context; else free *json with qc_text_free. */
+bool cli_stats(const cli_session *session, const qc_report *report, const qc_pipeline *pipeline,
+               const char *input, const char *mode, const qc_stats_options *stats, char **json);
+/* The page of --report; free() it. stats: the text of qc_stats_json. NULL: it cannot be made. */
 char *cli_report_page(const cli_session *session, const qc_remesh_result *result, const char *stats,
                       const char *command);
-/* Ratios of a report. */
-typedef struct cli_figures {
-    double rsd_edge, rsd_angle, hausdorff_rel, mean_dist_rel, feature_distance_rel, arap_mean;
-} cli_figures;
-cli_figures cli_report_figures(const qc_report *report);
 
 /* --- commands: argv[0] is the command's name ----------------------------------------------- */
 

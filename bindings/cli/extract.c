@@ -23,7 +23,7 @@ typedef struct run {
     qc_polygon_mesh *soup;
     qc_corner_map *map;
     qc_bag *bag;
-    cli_times times;
+    qc_stats_options stats;
 } run;
 
 static int build(run *r, const settings *s) {
@@ -47,7 +47,7 @@ static int compute(run *r, const settings *s) {
     if (status != EXIT_DONE) return status;
     if (qc_corner_map_from_polygons(ctx, r->soup, &r->map) != QC_OK)
         return cli_session_error(&r->session, s->input, EXIT_INPUT);
-    r->times.read = cli_seconds() - start;
+    r->stats.read = cli_seconds() - start;
     if (qc_bag_create(ctx, &r->bag) != QC_OK || qc_bag_put(r->bag, "map", r->map) != QC_OK ||
         qc_bag_put(r->bag, "mesh", r->map->mesh) != QC_OK ||
         qc_pipeline_run(r->pipeline, r->bag) != QC_OK)
@@ -56,13 +56,12 @@ static int compute(run *r, const settings *s) {
 }
 
 static int write_stats(run *r, const settings *s) {
-    r->times.total = cli_seconds() - r->session.start;
-    char *text =
-        cli_stats_json(qc_bag_latest(r->bag, QC_TYPE_REPORT), r->pipeline, s->input, "extract",
-                       &r->times, r->session.n_warnings, (const char *const *)r->session.warning);
-    if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->stats);
+    char *text = NULL;
+    if (!cli_stats(&r->session, qc_bag_latest(r->bag, QC_TYPE_REPORT), r->pipeline, s->input,
+                   "extract", &r->stats, &text))
+        return cli_session_error(&r->session, s->stats, EXIT_FAILED);
     const int status = cli_write_text(s->stats, text);
-    free(text);
+    qc_text_free(text);
     return status;
 }
 
@@ -77,7 +76,7 @@ static int work(run *r, const settings *s) {
     if (qc_polygon_mesh_write_as(r->session.ctx, quads, s->output, s->format,
                                  "quadcover " QC_VERSION_STRING) != QC_OK)
         return cli_session_error(&r->session, s->output, EXIT_FAILED);
-    r->times.write = cli_seconds() - start;
+    r->stats.write = cli_seconds() - start;
     return s->stats ? write_stats(r, s) : EXIT_DONE;
 }
 

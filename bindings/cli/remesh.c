@@ -38,7 +38,7 @@ typedef struct run {
     qc_pipeline *pipeline;
     qc_polygon_mesh *input;
     qc_remesh_result result;
-    cli_times times;
+    qc_stats_options stats;
 } run;
 
 /* Hands the table of options, which set *s, to a user. */
@@ -221,14 +221,13 @@ static int write_report(run *r, const settings *s, const char *stats) {
 
 static int write_figures(run *r, const settings *s) {
     if (!s->stats && !s->report) return EXIT_DONE;
-    r->times.total = cli_seconds() - r->session.start;
-    char *text = cli_stats_json(r->result.report, r->pipeline, s->input,
-                                s->pipeline ? "pipeline" : modes[mode_of(s)], &r->times,
-                                r->session.n_warnings, (const char *const *)r->session.warning);
-    if (!text) return cli_error(EXIT_FAILED, "%s: cannot print the statistics", s->input);
+    char *text = NULL;
+    if (!cli_stats(&r->session, r->result.report, r->pipeline, s->input,
+                   s->pipeline ? "pipeline" : modes[mode_of(s)], &r->stats, &text))
+        return cli_session_error(&r->session, s->input, EXIT_FAILED);
     int status = s->stats ? cli_write_text(s->stats, text) : EXIT_DONE;
     if (status == EXIT_DONE && s->report) status = write_report(r, s, text);
-    free(text);
+    qc_text_free(text);
     return status;
 }
 
@@ -251,7 +250,7 @@ static int write_all(run *r, const settings *s) {
     if (status == EXIT_DONE)
         status = write_mesh(r, r->result.uv, s->uv, s->format, "a parameterization");
     if (status == EXIT_DONE) status = write_field(r, s->save_field);
-    r->times.write = cli_seconds() - start;
+    r->stats.write = cli_seconds() - start;
     return status == EXIT_DONE ? write_figures(r, s) : status;
 }
 
@@ -261,7 +260,7 @@ static int work(run *r, const settings *s) {
     if (status == EXIT_DONE) status = cli_read_mesh(&r->session, s->input, &r->input);
     if (status == EXIT_DONE && s->stroke_rays)
         status = cli_add_strokes(&r->session, r->registry, s->stroke_rays, &r->input);
-    r->times.read = cli_seconds() - start;
+    r->stats.read = cli_seconds() - start;
     if (status == EXIT_DONE) status = compute(r, s);
     if (status == EXIT_DONE) status = write_all(r, s);
     return status;

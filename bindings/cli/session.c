@@ -138,6 +138,19 @@ void cli_session_quiet(cli_session *session) {
     session->line_open = false;
 }
 
+bool cli_stats(const cli_session *session, const qc_report *report, const qc_pipeline *pipeline,
+               const char *input, const char *mode, const qc_stats_options *stats, char **json) {
+    qc_stats_options o = QC_STATS_OPTIONS_INIT;
+    o.input = input;
+    o.mode = mode;
+    o.total = cli_seconds() - session->start;
+    o.read = stats->read;
+    o.write = stats->write;
+    o.n_warnings = session->n_warnings;
+    o.warning = (const char *const *)session->warning;
+    return qc_stats_json(session->ctx, report, pipeline, &o, json) == QC_OK;
+}
+
 int cli_session_error(cli_session *session, const char *prefix, int fallback) {
     cli_session_quiet(session);
     if (interrupted) return cli_error(EXIT_INTERRUPTED, "interrupted");

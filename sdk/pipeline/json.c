@@ -1,4 +1,4 @@
-/* Pipelines as JSON text, read and escaped by jansson (MIT); the only file which includes it. */
+/* Pipelines as JSON text, read and escaped by jansson (MIT). */
 #include "sdk/pipeline/internal.h"
 #include <jansson.h>
 #include <stdlib.h>

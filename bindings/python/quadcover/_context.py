@@ -62,7 +62,7 @@ def _class_of(status, made={}):
 class _Callbacks:
     """What the library's callbacks see; apart from the session, so that no cycle keeps that."""
 
-    progress, raised = None, None
+    progress, raised, lines = None, None, None
 
 
 class Session:
@@ -122,13 +122,15 @@ class Session:
         return ffi.gc(out[0], release)
 
     @contextlib.contextmanager
-    def reporting(self, progress):
-        """Within: progress(fraction, stage) is called, and cancels by returning False."""
-        before, self.callbacks.progress = self.callbacks.progress, progress
+    def reporting(self, progress, lines=None):
+        """Within: progress(fraction, stage) is called, and cancels by returning False; warnings are
+        appended to the list `lines`, too."""
+        before = self.callbacks.progress, self.callbacks.lines
+        self.callbacks.progress, self.callbacks.lines = progress, lines
         try:
             yield self
         finally:
-            self.callbacks.progress = before
+            self.callbacks.progress, self.callbacks.lines = before
 
 
 _local = threading.local()
@@ -151,7 +153,11 @@ def set_threads(threads):
 def qc_python_log(user, level, stage, line):
     if level >= lib.QC_LOG_WARNING:
         prefix = text(stage)
-        warnings.warn((prefix + ": " if prefix else "") + text(line), QuadcoverWarning, stacklevel=2)
+        message = (prefix + ": " if prefix else "") + text(line)
+        lines = ffi.from_handle(user).lines
+        if lines is not None:
+            lines.append(message)
+        warnings.warn(message, QuadcoverWarning, stacklevel=2)
 
 
 def _raised_outside(kind, error, traceback):

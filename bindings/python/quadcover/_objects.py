@@ -71,6 +71,28 @@ class Object:
         return "<quadcover.%s>" % type(self).__name__
 
 
+class _Attribute:
+    """The numbers of one attribute inside a mesh, which stays alive with the array."""
+
+    def __init__(self, mesh, c):
+        n = {lib.QC_AT_VERTEX: mesh.n_vertices, lib.QC_AT_FACE: mesh.n_faces,
+             lib.QC_AT_CORNER: mesh.n_corners}[c.at]
+        shape = (n,) if c.width == 1 else (n, c.width)
+        array = np.asarray(_View(mesh, c.value, shape)) if n else np.zeros(shape)
+        self.name, self.at = text(c.name), c.at
+        self.array = array.astype(np.int64) if c.kind == lib.QC_ATTRIBUTE_LABEL else array
+
+
+def _attributes(at):
+    """A property: {name: array} of what elements of one kind have."""
+
+    def get(self):
+        all_ = (_Attribute(self, self._c.attribute[i]) for i in range(self._c.n_attributes))
+        return {a.name: a.array for a in all_ if a.at == at}
+
+    return property(get, doc="{name: array (n,) or (n, k)}; whole numbers for labels")
+
+
 class PolygonMesh(Object):
     """Any polygon mesh: what files hold, and the quads which come out."""
 
@@ -86,6 +108,14 @@ class PolygonMesh(Object):
     face_group = _array("face_group", "n_faces")
     source_face = _array("source_face", "n_vertices")
     source_barycentric = _array("source_barycentric", "n_vertices", 3)
+    vertex_attributes = _attributes(lib.QC_AT_VERTEX)
+    face_attributes = _attributes(lib.QC_AT_FACE)
+    corner_attributes = _attributes(lib.QC_AT_CORNER)
+
+    @property
+    def group_names(self):
+        """The OBJ statements of groups 1, 2, ..."""
+        return [text(self._c.group_name[i]) for i in range(self._c.n_groups)]
 
     @property
     def faces(self):
@@ -96,8 +126,12 @@ class PolygonMesh(Object):
         return self.face_vertex
 
     @classmethod
-    def from_arrays(cls, vertices, faces):
-        """From positions (n x 3) and corners: an array (m x k) or a list of lists."""
+    def from_arrays(cls, vertices, faces, vertex_attributes=None, face_attributes=None,
+                    corner_attributes=None, face_group=None):
+        """From positions (n x 3) and corners: an array (m x k) or a list of lists.
+
+        Attributes are {name: array (n,) or (n, k)}: whole numbers are labels, "normal" is a
+        direction, all else can be interpolated. face_group: one number a face, 0 = none."""
         vertices = np.ascontiguousarray(vertices, np.float64)
         if vertices.ndim != 2 or vertices.shape[1] != 3:
             raise ValueError("vertices have shape %s; give (n, 3)" % (vertices.shape,))
@@ -105,7 +139,8 @@ class PolygonMesh(Object):
         sizes = [len(f) for f in rows]
         s = session()
         out = ffi.new("qc_polygon_mesh **")
-        s.call(lib.qc_polygon_mesh_create, len(vertices), len(rows), sum(sizes), 0, 0, 0, out)
+        s.call(lib.qc_polygon_mesh_create, len(vertices), len(rows), sum(sizes), 0, 0,
+               0 if face_group is None else lib.QC_POLYGON_FACE_GROUP, out)
         mesh = cls(out[0])
         c = mesh._c
         ffi.memmove(c.position, np.ascontiguousarray(vertices), vertices.nbytes)
@@ -113,7 +148,28 @@ class PolygonMesh(Object):
         corner = (np.concatenate(rows) if len(rows) else np.zeros(0)).astype(np.int32)
         ffi.memmove(c.face_offset, offset, offset.nbytes)
         ffi.memmove(c.face_vertex, corner, corner.nbytes)
+        if face_group is not None:
+            group = np.ascontiguousarray(face_group, np.int32)
+            if group.shape != (len(rows),):
+                raise ValueError("face_group has shape %s; give (%d,)" % (group.shape, len(rows)))
+            ffi.memmove(c.face_group, group, group.nbytes)
+        for at, n, given in ((lib.QC_AT_VERTEX, len(vertices), vertex_attributes),
+                             (lib.QC_AT_FACE, len(rows), face_attributes),
+                             (lib.QC_AT_CORNER, len(corner), corner_attributes)):
+            for name, array in (given or {}).items():
+                mesh._add(name, at, n, np.asarray(array))
         return mesh
+
+    def _add(self, name, at, n, array):
+        if array.ndim not in (1, 2) or len(array) != n or 0 in array.shape[1:]:
+            raise ValueError("attribute %r has shape %s; give (%d,) or (%d, k)"
+                             % (name, array.shape, n, n))
+        kind = (lib.QC_ATTRIBUTE_LABEL if array.dtype.kind in "iub" else
+                lib.QC_ATTRIBUTE_DIRECTION if name == "normal" else lib.QC_ATTRIBUTE_LINEAR)
+        values, out = np.ascontiguousarray(array, np.float64), ffi.new("double **")
+        session().call(lib.qc_polygon_mesh_add_attribute, self._c, name.encode(), at, kind,
+                       1 if array.ndim == 1 else array.shape[1], out)
+        ffi.memmove(out[0], values, values.nbytes)
 
     @classmethod
     def read(cls, path):
@@ -123,7 +179,7 @@ class PolygonMesh(Object):
         return cls(out[0])
 
     def write(self, path, comment=None):
-        """As OBJ, through a temporary."""
+        """As PLY, OFF or OBJ, by extension, through a temporary."""
         session().call(lib.qc_polygon_mesh_write, self._c, str(path).encode(),
                        ffi.NULL if comment is None else comment.encode())
 

@@ -3,6 +3,7 @@ import gc
 import inspect
 import os
 import signal
+import tempfile
 import threading
 import unittest
 import warnings
@@ -34,6 +35,52 @@ class Remeshing(unittest.TestCase):
         points = np.einsum("nk,nkd->nd", inside, mesh.vertices[mesh.faces[result.source_face]])
         self.assertEqual(points.shape, vertices.shape)
         self.assertEqual(result.uv.n_faces, result.mesh.n_faces)
+
+    def test_attributes_come_through(self):
+        v, f = square(20)
+        weights = np.stack([1 - v[:, 0], v[:, 0]], 1)
+        part = (v[f].mean(1)[:, 0] > 0.5).astype(int)
+        result = qc.remesh(v, f, quads=100, mode="fast", face_group=1 + part, keep_materials=True,
+                           vertex_attributes={"skin": weights, "heat": v[:, 1],
+                                              "normal": np.tile([0, 0, 1.0], (len(v), 1))},
+                           face_attributes={"part": part})
+        a = result.attributes
+        self.assertTrue(np.allclose(a["skin"].sum(1), 1))
+        self.assertTrue(np.allclose(a["skin"][:, 1], result.vertices[:, 0]))
+        self.assertTrue(np.allclose(a["heat"], result.vertices[:, 1]))
+        self.assertTrue(np.allclose(a["normal"], [0, 0, 1]))
+        part = result.face_attributes["part"]
+        self.assertEqual(part.dtype.kind, "i")
+        self.assertTrue((result.polygons.face_group == 1 + part).all())
+        x = result.vertices[result.quads][:, :, 0]
+        self.assertTrue(np.where(part == 1, x.min(1) > 0.5 - 1e-9, x.max(1) < 0.5 + 1e-9).all())
+        with self.assertRaises(ValueError):
+            qc.remesh(v, f, vertex_attributes={"heat": v[:5, 0]})
+        with self.assertRaises(ValueError):
+            qc.remesh(qc.shape("torus", resolution=500), vertex_attributes={"heat": v[:, 0]})
+
+    def test_attributes_go_through_files(self):
+        v, f = square(2)
+        mesh = qc.PolygonMesh.from_arrays(v, f, {"w": v[:, :2], "id": np.arange(len(v))},
+                                          {"area": np.full(len(f), 0.125)})
+        with tempfile.TemporaryDirectory() as folder:
+            mesh.write(folder + "/a.ply", "a comment")
+            back = qc.PolygonMesh.read(folder + "/a.ply")
+        self.assertTrue((back.vertex_attributes["w"] == v[:, :2]).all())
+        self.assertTrue((back.vertex_attributes["id"] == np.arange(len(v))).all())
+        self.assertTrue((back.face_attributes["area"] == 0.125).all())
+
+    def test_statistics_are_those_of_the_program(self):
+        v, f = square(12)
+        stats = qc.remesh(v, f, quads=64, mode="fast").stats
+        self.assertEqual(stats["quadcover"], qc.__version__)
+        self.assertEqual(stats["mode"], "fast")
+        self.assertEqual(stats["density"]["target_quads"], 64)
+        self.assertEqual(stats["quads"]["euler"], 1)
+        self.assertEqual(stats["quads"]["non_quads"], 0)
+        self.assertGreater(stats["seconds"]["total"], 0)
+        self.assertIn("qc.round", stats["versions"])
+        self.assertEqual(stats["warnings"], [])
 
     def test_same_bytes_for_any_threads(self):
         mesh = qc.shape("sphere", resolution=1500)

@@ -78,6 +78,28 @@ QC_API qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_
 /* Releases all members and zeroes the struct. NULL is fine. */
 QC_API void qc_remesh_result_clear(qc_remesh_result *result);
 
+/* --- statistics ------------------------------------------------------------------------------ */
+
+/* Ratios made from the sums of a report, as the keys of the statistics say (docs/files.md). */
+typedef struct qc_figures {
+    double rsd_edge, rsd_angle, hausdorff_rel, mean_dist_rel, feature_distance_rel, arap_mean;
+} qc_figures;
+QC_API void qc_report_figures(const qc_report *report, qc_figures *out);
+
+typedef struct qc_stats_options {
+    uint32_t struct_size;
+    const char *input, *mode;  /* texts of these keys; NULL = "" */
+    double total, read, write; /* seconds                        */
+    int32_t n_warnings;
+    const char *const *warning;
+} qc_stats_options;
+#define QC_STATS_OPTIONS_INIT                                                                      \
+    { sizeof(qc_stats_options), NULL, NULL, 0.0, 0.0, 0.0, 0, NULL }
+/* The statistics of a run as JSON text with the keys of docs/files.md, freed with qc_text_free.
+ * pipeline (may be NULL): the one which was run. Errors: INPUT (a text is not UTF-8), NOMEM. */
+QC_API qc_status qc_stats_json(qc_ctx *ctx, const qc_report *report, const qc_pipeline *pipeline,
+                               const qc_stats_options *options, char **json);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,11 +1,12 @@
 /* The statistics file: keys as docs/files.md fixes them; ratios are made from the sums of the
  * report. */
-#include "bindings/cli/cli.h"
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+
+#include "sdk/remesh/internal.h"
 
 #define HALF_PI 1.57079632679489661923
 
@@ -15,8 +16,8 @@ static double deviation(double n, double sum, double sum2) {
     return variance > 0 ? sqrt(variance) : 0;
 }
 
-cli_figures cli_report_figures(const qc_report *r) {
-    cli_figures f = {0, 0, 0, 0, 0, 0};
+void qc_report_figures(const qc_report *r, qc_figures *out) {
+    qc_figures f = {0, 0, 0, 0, 0, 0};
     if (r->quads.edge_sum > 0)
         f.rsd_edge = 100 * deviation(r->quads.edges, r->quads.edge_sum, r->quads.edge_sum2) *
                      r->quads.edges / r->quads.edge_sum;
@@ -29,7 +30,7 @@ cli_figures cli_report_figures(const qc_report *r) {
             f.mean_dist_rel = r->quads.distance_sum / r->quads.distance_samples / r->quads.diagonal;
     }
     if (r->uv.area > 0) f.arap_mean = r->uv.arap_sum / r->uv.area;
-    return f;
+    *out = f;
 }
 
 static json_t *number(double x) {
@@ -63,7 +64,7 @@ static json_t *energies(const qc_report *r) {
                      integer(r->energy.iterations), "evaluations", integer(r->energy.evaluations));
 }
 
-static json_t *quads(const qc_report *r, const cli_figures *f) {
+static json_t *quads(const qc_report *r, const qc_figures *f) {
     return json_pack("{s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o,s:o}", "vertices",
                      integer(r->quads.vertices), "faces", integer(r->quads.faces), "non_quads",
                      integer(r->quads.non_quads), "irregular", integer(r->quads.irregular), "euler",
@@ -76,13 +77,13 @@ static json_t *quads(const qc_report *r, const cli_figures *f) {
                      number(f->feature_distance_rel));
 }
 
-static json_t *seconds(const qc_pipeline *pipeline, const cli_times *times) {
+static json_t *seconds(const qc_pipeline *pipeline, const qc_stats_options *o) {
     json_t *stages = json_object();
     for (uint32_t i = 0; pipeline && i < qc_pipeline_count(pipeline); i++)
         json_object_set_new(stages, qc_pipeline_step_name(pipeline, i),
                             number(qc_pipeline_seconds(pipeline, i)));
-    return json_pack("{s:o,s:o,s:o,s:o}", "total", number(times->total), "read",
-                     number(times->read), "write", number(times->write), "stages", stages);
+    return json_pack("{s:o,s:o,s:o,s:o}", "total", number(o->total), "read", number(o->read),
+                     "write", number(o->write), "stages", stages);
 }
 
 /* Every step with its parameters, and the versions of the stages. */
@@ -104,17 +105,18 @@ static double peak_rss_mb(void) {
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss / 1024 : 0;
 }
 
-char *cli_stats_json(const qc_report *r, const qc_pipeline *pipeline, const char *input,
-                     const char *mode, const cli_times *times, int n_warnings,
-                     const char *const *warnings) {
-    const cli_figures f = cli_report_figures(r);
+static json_t *statistics(const qc_report *r, const qc_pipeline *pipeline,
+                          const qc_stats_options *o) {
+    qc_figures f;
     json_t *list = json_array();
-    for (int i = 0; i < n_warnings; i++) json_array_append_new(list, json_string(warnings[i]));
+    qc_report_figures(r, &f);
+    for (int32_t i = 0; i < o->n_warnings; i++)
+        json_array_append_new(list, json_string(o->warning[i]));
     json_t *root = json_pack(
         "{s:s,s:{s:s,s:o,s:o,s:o,s:o,s:o},s:{s:o,s:o},s:{s:o,s:o},s:o,s:{s:o,s:o,s:o,s:o},s:o,s:o,"
         "s:o,s:s,s:o}",
         "quadcover", qc_version(), /**/
-        "input", "file", input, "vertices", integer(r->input.vertices), "faces",
+        "input", "file", o->input ? o->input : "", "vertices", integer(r->input.vertices), "faces",
         integer(r->input.faces), "genus", integer(r->input.genus), "boundaries",
         integer(r->input.boundaries), "components", integer(r->input.components), /**/
         "density", "edge_length", number(r->density.edge_length), "target_quads",
@@ -123,18 +125,30 @@ char *cli_stats_json(const qc_report *r, const qc_pipeline *pipeline, const char
         "energy", energies(r),                                                                /**/
         "uv", "flipped", integer(r->uv.flipped), "degenerate", integer(r->uv.degenerate),
         "max_seam_error", number(r->uv.max_seam_error), "arap_mean", number(f.arap_mean), /**/
-        "quads", quads(r, &f), "seconds", seconds(pipeline, times), "peak_rss_mb",
-        number(peak_rss_mb()), "mode", mode, "warnings", list);
-    if (!root) return NULL;
-    add_pipeline(root, pipeline);
+        "quads", quads(r, &f), "seconds", seconds(pipeline, o), "peak_rss_mb",
+        number(peak_rss_mb()), "mode", o->mode ? o->mode : "", "warnings", list);
+    if (root) add_pipeline(root, pipeline);
+    return root;
+}
+
+qc_status qc_stats_json(qc_ctx *ctx, const qc_report *report, const qc_pipeline *pipeline,
+                        const qc_stats_options *options, char **json) {
+    qc_stats_options o = QC_STATS_OPTIONS_INIT;
+    if (options)
+        memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
+    json_t *root = statistics(report, pipeline, &o);
+    if (!root)
+        return qc__fail(ctx, QC_ERR_INPUT, -1,
+                        "statistics: a text is not valid UTF-8; rename the file");
     char *text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
     json_decref(root);
     const size_t length = text ? strlen(text) : 0;
-    char *line = text ? realloc(text, length + 2) : NULL;
-    if (!line) {
-        free(text);
-        return NULL;
+    char *copy = text ? QC__NEW(ctx, char, length + 2) : NULL;
+    if (copy) {
+        memcpy(copy, text, length);
+        memcpy(copy + length, "\n", 2);
+        *json = copy;
     }
-    memcpy(line + length, "\n", 2);
-    return line;
+    free(text);
+    return copy ? QC_OK : QC_ERR_NOMEM;
 }
