@@ -13,7 +13,7 @@ start() {
 }
 a_is_done() { grep -q '"name":"a"' res/results.jsonl 2>/dev/null && b_runs; }
 b_runs() { [ -n "$(ls -d res/.batch/b.?????? 2>/dev/null)" ]; }
-runs() { pgrep -f "remesh $scratch/in/b.obj" >/dev/null; }
+runs() { grep -qsa "$scratch/in/[b].obj" /proc/[0-9]*/cmdline; } # [b]: not grep itself
 none_runs() { ! runs; }
 
 start
