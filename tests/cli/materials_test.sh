@@ -50,11 +50,40 @@ out=s.json
 grep -q '"groups": true' s.json || fail 'no groups'
 run 0 remesh cube.obj -o kept.obj --quads 600 --mode fast --keep-materials --sharp 180
 inside kept.obj || fail 'a quad leaves its material without creases'
-# A border which is not kept is named: a single face of its own material among coarse quads.
-awk '/^f/ && ++n == 200 { print "usemtl spot"; print; print "usemtl left"; next } { print }' \
-    cube.obj >spot.obj
-run 0 remesh spot.obj -o kept.obj --quads 60 --mode fast --keep-materials
-grep -q '^quadcover: warning: ' err || fail 'the lost border is not named'
+# Borders which zigzag along the edges of a curved surface: where two quads of different materials
+# meet, their edge is one of the lines on features.
+run 0 shape sphere --resolution 3000 -o sphere.obj
+awk '$1 == "v" { n++; x[n] = $2; y[n] = $3; print }
+     $1 == "f" { print "usemtl " (x[$2] + x[$3] + x[$4] > 0) (y[$2] + y[$3] + y[$4] > 0.9); print }' \
+    sphere.obj >parts.obj
+run 0 remesh parts.obj -o kept.obj --quads 1500 --mode fast --keep-materials
+grep -q 'cross a border' err && fail "a warning: $(cat err)"
+awk 'function key(a, b) { return a < b ? a " " b : b " " a }
+     $1 == "usemtl" { m = $2 }
+     $1 == "l" { line[key($2 + 0, $3 + 0)] = 1 }
+     $1 == "f" { for (k = 2; k <= 5; k++) {
+         e = key($k + 0, $(k == 5 ? 2 : k + 1) + 0)
+         if (e in of && of[e] != m) border[e] = 1
+         of[e] = m } }
+     END { for (e in border) { n++; if (!(e in line)) bad++ }
+           exit !(n > 50 && bad == 0) }' kept.obj || fail 'a border is no line of features'
+# A border which cannot be kept is named, and so are the quads which cross it: a sector of 15
+# degrees of a disk.
+awk 'BEGIN {
+    n = 24; rings = 8; print "v 0 0 0"
+    for (r = 1; r <= rings; r++) for (i = 0; i < n; i++)
+        print "v", r * cos(6.283185307 * i / n), r * sin(6.283185307 * i / n), 0
+    for (i = 0; i < n; i++) {
+        print "usemtl " (i == 3 ? "sector" : "rest")
+        k = (i + 1) % n; print "f 1", 2 + i, 2 + k
+        for (r = 1; r < rings; r++)
+            print "f", 2 + (r - 1) * n + i, 2 + r * n + i, 2 + r * n + k, 2 + (r - 1) * n + k
+    } }' >disk.obj
+run 0 remesh disk.obj -o kept.obj --quads 200 --mode fast --keep-materials --stats s.json
+grep -q '^quadcover: warning: features: ' err || fail "the lost border is not named: $(cat err)"
+grep -q '^quadcover: warning: [0-9]* quads cross a border between groups' err ||
+    fail "the quads are not named: $(cat err)"
+grep -q 'cross a border' s.json || fail 'the statistics do not tell'
 run 2 remesh cube.obj -o kept.obj --keep-materials --no-features
 error_says '--keep-materials'
 finish
