@@ -119,15 +119,16 @@ void qc__periods_load(const qc__seams *s, const double *cotangent, const qc_comp
     }
 }
 
-/* rhs -= W^T load. */
-static void subtract_load(const qc__periods *p, const double _Complex *load, double *rhs) {
+/* rhs += factor W^T load. */
+static void add_load(const qc__periods *p, double factor, const double _Complex *load,
+                     double *rhs) {
     const qc__seams *s = p->seams;
     for (int32_t v = 0; v < s->mesh->n_vertices; v++) {
         const int32_t *unknown = p->stiffness->unknown + 2 * (int64_t)v;
         for (int32_t w = s->vertex_wedge[v]; w < s->vertex_wedge[v + 1]; w++) {
             const double _Complex r = qc__turn(load[w], -s->wedge_turn[w]);
-            if (unknown[0] >= 0) rhs[unknown[0]] -= creal(r);
-            if (unknown[1] >= 0) rhs[unknown[1]] -= cimag(r);
+            if (unknown[0] >= 0) rhs[unknown[0]] += factor * creal(r);
+            if (unknown[1] >= 0) rhs[unknown[1]] += factor * cimag(r);
         }
     }
 }
@@ -152,7 +153,8 @@ static void assemble_rhs(const qc__periods *p, const double _Complex *wedge, dou
 }
 
 /* The solution x as complex values at the vertices. */
-static void spread(const qc__map_stiffness *m, const double *x, double _Complex *F) {
+void qc__periods_spread(const qc__periods *p, const double *x, double _Complex *F) {
+    const qc__map_stiffness *m = p->stiffness;
     for (int32_t v = 0; v < m->seams->mesh->n_vertices; v++) {
         const int32_t *unknown = m->unknown + 2 * (int64_t)v;
         F[v] = (unknown[0] >= 0 ? x[unknown[0]] : 0) + (unknown[1] >= 0 ? x[unknown[1]] : 0) * I;
@@ -176,15 +178,23 @@ static void seam_residual(const qc__periods *p, const double _Complex *wedge,
     }
 }
 
-/* O^T of the residual: dual (n_free). symbol of scratch is overwritten. */
-static void project(const qc__periods *p, column *scratch, double *dual) {
-    qc__seams_wedge_duals(p->seams, scratch->residual, scratch->symbol);
+/* O^T of the residual: dual (n_free). symbol is overwritten. */
+static void project(const qc__periods *p, const double _Complex *residual, double *symbol,
+                    double *dual) {
+    qc__seams_wedge_duals(p->seams, residual, symbol);
     for (int32_t j = 0; j < p->seams->n_free; j++) {
         double sum = 0;
         for (int64_t i = p->column_start[j]; i < p->column_start[j + 1]; i++)
-            sum += p->column_value[i] * scratch->symbol[p->column_symbol[i]];
+            sum += p->column_value[i] * symbol[p->column_symbol[i]];
         dual[j] = sum;
     }
+}
+
+void qc__periods_pull_back(const qc__periods *p, const double _Complex *load, double *symbol,
+                           double *dF, double *dy) {
+    memset(dF, 0, sizeof *dF * (size_t)p->stiffness->n);
+    add_load(p, 1, load, dF);
+    project(p, load, symbol, dy);
 }
 
 static void load_column(const qc__periods *p, int64_t j, column *scratch) {
@@ -219,9 +229,9 @@ qc_status qc__period_matrix(qc_ctx *ctx, const qc__periods *p, double *P) {
         status = qc__map_stiffness_solve(ctx, p->stiffness, (int32_t)(last - first), x);
         for (int64_t j = first; j < last && status == QC_OK; j++) {
             load_column(p, j, &scratch);
-            spread(p->stiffness, x + (j - first) * rows, scratch.F);
+            qc__periods_spread(p, x + (j - first) * rows, scratch.F);
             seam_residual(p, scratch.wedge, scratch.F, scratch.residual);
-            project(p, &scratch, P + j * n);
+            project(p, scratch.residual, scratch.symbol, P + j * n);
         }
     }
     if (status == QC_OK) symmetrise(P, n);
@@ -235,10 +245,21 @@ qc_status qc__periods_extend(qc_ctx *ctx, const qc__periods *p, const double _Co
     double *x = QC__NEW(ctx, double, p->stiffness->n);
     if (!x) return QC_ERR_NOMEM;
     assemble_rhs(p, wedge, x);
-    if (load) subtract_load(p, load, x);
+    if (load) add_load(p, -1, load, x);
     const qc_status status = qc__map_stiffness_solve(ctx, p->stiffness, 1, x);
-    if (status == QC_OK) spread(p->stiffness, x, F);
+    if (status == QC_OK) qc__periods_spread(p, x, F);
     qc__free(x);
+    return status;
+}
+
+qc_status qc__periods_add_extension(qc_ctx *ctx, const qc__periods *p, const double _Complex *wedge,
+                                    double *x) {
+    double *change = QC__NEW(ctx, double, p->stiffness->n);
+    if (!change) return QC_ERR_NOMEM;
+    assemble_rhs(p, wedge, change);
+    const qc_status status = qc__map_stiffness_solve(ctx, p->stiffness, 1, change);
+    for (int32_t i = 0; i < p->stiffness->n && status == QC_OK; i++) x[i] += change[i];
+    qc__free(change);
     return status;
 }
 
@@ -249,7 +270,7 @@ qc_status qc__periods_slope(qc_ctx *ctx, const qc__periods *p, const double _Com
     if (done) {
         seam_residual(p, wedge, F, scratch.residual);
         for (int32_t w = 0; w < p->seams->n_wedges && load; w++) scratch.residual[w] += load[w];
-        project(p, &scratch, slope);
+        project(p, scratch.residual, scratch.symbol, slope);
     }
     column_free(&scratch);
     return done ? QC_OK : QC_ERR_NOMEM;

@@ -35,9 +35,19 @@ void qc__periods_load(const qc__seams *seams, const double *cotangent, const qc_
  * 1/2 int |dh + d|^2, d by its load, NULL = 0: F (n_vertices), zero at given coordinates. */
 qc_status qc__periods_extend(qc_ctx *ctx, const qc__periods *periods, const double _Complex *wedge,
                              const double _Complex *load, double _Complex *F);
+/* Adds that of d = 0 to unknown coordinates x (stiffness->n). */
+qc_status qc__periods_add_extension(qc_ctx *ctx, const qc__periods *periods,
+                                    const double _Complex *wedge, double *x);
+/* Unknown coordinates x as F (n_vertices), zero elsewhere. */
+void qc__periods_spread(const qc__periods *periods, const double *x, double _Complex *F);
 /* Derivative of that energy by the free variables: slope (n_free). Errors: NOMEM. */
 qc_status qc__periods_slope(qc_ctx *ctx, const qc__periods *periods, const double _Complex *wedge,
                             const double _Complex *load, const double _Complex *F, double *slope);
+/* The transpose of (F, y) -> corner values, summed by wedges already: of load (n_wedges), by the
+ * unknown coordinates of F, dF (stiffness->n), and by the free variables, dy (n_free). symbol:
+ * n_symbols of space. */
+void qc__periods_pull_back(const qc__periods *periods, const double _Complex *load, double *symbol,
+                           double *dF, double *dy);
 /* Corner values f' = i^{a_w} F_v + wedge (3 n_faces), and back: what f has in the wedges besides
  * the unknown coordinates of F_v. */
 void qc__periods_corners(const qc__seams *seams, const double _Complex *wedge,

@@ -44,8 +44,8 @@ typedef struct qc__rounding {
 double qc__round_area(const qc_complex *f, int32_t n_faces);
 /* Dirichlet energy of corner values f in the norm without stiffening. */
 double qc__round_energy(const qc__rounding *r, const qc_complex *f);
-/* Puts the features of the seamless map on isolines, with real levels; stiffens while that makes it
- * fold over. Then finds what has to stay apart. Needs P. */
+/* Puts the features of the seamless map on isolines, with real levels, and unfolds it. Then finds
+ * what has to stay apart. */
 qc_status qc__round_align(qc__rounding *r);
 /* With the integers chosen, stiffens the best map where its features let it fold over. */
 qc_status qc__round_unfold(qc__rounding *r);

@@ -1,10 +1,11 @@
-/* Features on isolines before and after the rounding, and stiffening where that folds the map over
+/* Features on isolines before and after the rounding, and what is done where the map folds over
  * (docs/theory/rounding.md, R.12). */
 #include "sdk/map/periods/round.h"
 #include <math.h>
 #include <string.h>
 #include "sdk/map/periods/align.h"
 #include "sdk/map/periods/frame_form.h"
+#include "sdk/map/periods/unfold.h"
 #include "sdk/map/periods/wrong_cones.h"
 
 enum {
@@ -58,18 +59,23 @@ static int32_t count_folded(const qc__rounding *r, const qc_complex *f) {
     return n;
 }
 
-/* Puts the features of the seamless map on isolines, with real levels; stiffens while that makes it
- * fold over. */
-static qc_status align_features(qc__rounding *r) {
-    qc_status status = combed_frame(r);
-    for (int32_t i = 0; status == QC_OK; i++) {
-        if (!qc__progress(r->ctx, 0.6)) status = QC_ERR_CANCELLED;
-        if (status == QC_OK) status = qc__align(r->ctx, r->periods, r->P, r->z, r->f, r->period);
-        if (status != QC_OK || i == STIFFENING_ROUNDS || count_folded(r, r->f) == 0) break;
-        status = stiffen(r, r->f);
-        if (status == QC_OK && r->P) status = qc__period_matrix(r->ctx, r->periods, r->P);
+/* Unfolds the map; fewer faces fold and fewer cones wind wrong afterwards, mostly none. */
+static qc_status unfold(qc__rounding *r) {
+    const qc_matching *matching = r->seamless->matching;
+    const qc_cover cover = {r->mesh, matching->m};
+    const qc__features features = {&cover, r->seamless->face_turn, matching->axis};
+    qc__unfolding done = {0};
+    const qc_status status =
+        qc__unfold(r->ctx, r->periods, r->P, &features, r->z, r->f, r->period, &done);
+    if (status == QC_OK && done.evaluations > 0) {
+        qc__log(r->ctx, QC_LOG_INFO,
+                "the seamless map folds over at %d faces and winds wrong at %d places; after %d "
+                "evaluations "
+                "at %d and %d",
+                (int)done.folded_before, (int)done.wrong_before, (int)done.evaluations,
+                (int)done.folded, (int)done.wrong);
+        r->curl_energy = curl_energy(r);
     }
-    if (status == QC_OK) r->curl_energy = curl_energy(r);
     return status;
 }
 
@@ -109,7 +115,13 @@ qc_status qc__round_unfold(qc__rounding *r) {
 
 qc_status qc__round_align(qc__rounding *r) {
     r->curl_energy = r->seamless->curl_energy;
-    const qc_status status = r->seams->n_levels > 0 ? align_features(r) : QC_OK;
+    qc_status status = combed_frame(r);
+    if (status == QC_OK && r->seams->n_levels > 0) {
+        status = qc__align(r->ctx, r->periods, r->P, r->z, r->f, r->period);
+        r->curl_energy = curl_energy(r);
+    }
+    if (status == QC_OK && r->periods && !r->options.trial && r->mesh->n_poles == 0)
+        status = unfold(r);
     if (status != QC_OK) return status;
     qc__periods_split(r->seams, r->f, r->wedge, r->F);
     if (!r->P) return QC_OK;

@@ -21,7 +21,7 @@ static void guided_edges(const qc__guide *g, int32_t c, qc_complex *to_next, qc_
     *to_prev = guided(g, c / 3, g->edge[qc_next(c)], -1.0);
 }
 
-int32_t qc__guide_turns(const qc__guide *g, int32_t v) {
+double qc__guide_angle(const qc__guide *g, int32_t v) {
     const qc_mesh *mesh = g->map->mesh;
     const int32_t start = mesh->vertex_corner[v];
     double sum = 0;
@@ -40,10 +40,10 @@ int32_t qc__guide_turns(const qc__guide *g, int32_t v) {
         sum += angle_between(qc_quarter_turn(b, r), next_a);
         c = d;
     } while (c != start);
-    return (int32_t)lround(sum / quarter);
+    return sum;
 }
 
-int32_t qc__map_turns(const qc__guide *g, int32_t v) {
+double qc__map_angle(const qc__guide *g, int32_t v) {
     const qc__reduced_map *m = g->map;
     const int32_t start = m->mesh->vertex_corner[v];
     double sum = 0;
@@ -58,7 +58,15 @@ int32_t qc__map_turns(const qc__guide *g, int32_t v) {
         sum += angle_between(a, b);
         c = qc_corner_ccw(m->mesh, c);
     } while (c >= 0 && c != start);
-    return (int32_t)lround(sum / quarter);
+    return sum;
+}
+
+int32_t qc__guide_turns(const qc__guide *g, int32_t v) {
+    return (int32_t)lround(qc__guide_angle(g, v) / quarter);
+}
+
+int32_t qc__map_turns(const qc__guide *g, int32_t v) {
+    return (int32_t)lround(qc__map_angle(g, v) / quarter);
 }
 
 /* The edges of a star by developed angle. */

@@ -15,8 +15,10 @@ typedef struct qc__guide {
     const qc_complex *edge;  /* 3 n_faces, tangent edges in units of the quad edge length  */
 } qc__guide;
 
-/* Quarter turns about vertex v, on the boundary of its open fan: of the guiding field and of the
- * map. */
+/* Angle about vertex v, on the boundary of its open fan: of the guiding field and of the map. */
+double qc__guide_angle(const qc__guide *guide, int32_t v);
+double qc__map_angle(const qc__guide *guide, int32_t v);
+/* The same in quarter turns. */
 int32_t qc__guide_turns(const qc__guide *guide, int32_t v);
 int32_t qc__map_turns(const qc__guide *guide, int32_t v);
 /* Puts the movable neighbours of interior vertex v where the guiding field would have them, `scale`

@@ -1,13 +1,11 @@
 /* The untangling energy of one patch of a map. Internal to sdk/map.
  *
- * Garanzha et al. 2021 (docs/theory/untangling.md): with J the Jacobian of the map relative to the
- * target shape of a face of area A, d = det J and chi(d, eps) = (d + sqrt(eps^2 + d^2)) / 2, E =
- * sum A [ (1 - theta) tr(J^T J) / chi + theta (1 + d^2) / chi ], finite and smooth for inverted
- * faces; eps falls with the worst determinant. The target shape is the face itself in units of the
- * quad edge length, slivers thickened. */
+ * The sum of that of its faces (face_energy.h); eps falls with the worst determinant. The target
+ * shape is the face itself in units of the quad edge length. */
 #ifndef QC_MAP_UNTANGLE_ENERGY_H
 #define QC_MAP_UNTANGLE_ENERGY_H
 
+#include "sdk/map/untangle/face_energy.h"
 #include "sdk/map/untangle/reduced_map.h"
 
 typedef struct qc__patch {
