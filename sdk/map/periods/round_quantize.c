@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "sdk/map/periods/round.h"
+#include "sdk/map/periods/snap.h"
 #include "sdk/map/quantize/exact_map.h"
 
-enum { EXACT_BITS = 40 };                  /* of the values; their sums stay exact in doubles */
 static const double read_tolerance = 1e-3; /* of the integers read from the values */
 static const double noteworthy = 0.1;      /* more quads than asked for */
 
@@ -22,28 +22,18 @@ typedef struct quantizing {
     int32_t *queue;  /* n_faces */
 } quantizing;
 
-static double snapped(double x, int32_t bits) {
-    return ldexp(rint(ldexp(x, bits)), -bits);
-}
-
-/* Periods and unknown coordinates become multiples of 2^-bits; what follows from them does so
- * exactly, being sums of them with integer coefficients. */
-static void make_exact(quantizing *q) {
+static qc_status make_exact(quantizing *q) {
     qc__rounding *r = q->r;
     const int64_t n = 3 * (int64_t)r->mesh->n_faces;
-    double extent = 1;
-    for (int64_t c = 0; c < n; c++) extent = fmax(extent, hypot(r->f[c].re, r->f[c].im));
-    q->bits = EXACT_BITS - (int32_t)ceil(log2(extent));
-    for (int32_t j = 0; j < r->seams->n_free; j++) r->target[j] = snapped(r->period[j], q->bits);
-    for (int32_t v = 0; v < r->mesh->n_vertices; v++)
-        r->correction[v] = snapped(creal(r->F[v]), q->bits) + I * snapped(cimag(r->F[v]), q->bits);
-    qc__seams_symbol_values(r->seams, r->target, r->symbol);
-    qc__seams_wedge_values(r->seams, r->symbol, r->wedge);
-    qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
-    for (int64_t c = 0; c < n; c++) {
+    int32_t folded = 0;
+    memcpy(r->trial, r->f, sizeof *r->trial * (size_t)n);
+    memcpy(r->target, r->period, sizeof *r->target * (size_t)r->seams->n_free);
+    const qc_status status = qc__snap(r->ctx, r->seams, r->trial, r->target, &q->bits, &folded);
+    for (int64_t c = 0; c < n && status == QC_OK; c++) {
         q->uv[2 * c] = (int64_t)ldexp(r->trial[c].re, q->bits);
         q->uv[2 * c + 1] = (int64_t)ldexp(r->trial[c].im, q->bits);
     }
+    return status;
 }
 
 static void mark_points(quantizing *q) {
@@ -108,13 +98,13 @@ static qc_status quantize(quantizing *q, bool *done) {
     const double sized = r->options.refine * r->seamless->sizing->target_quads;
     const double area = qc__round_area(r->f, r->mesh->n_faces);
     const double scale = sized > 0 ? sqrt(sized / area) : sqrt(r->options.refine);
-    make_exact(q);
+    qc_status status = make_exact(q);
     mark_points(q);
     qc__round_charts(r, q->rotation, q->axis);
     const int8_t *axis = r->seamless->matching->axis ? q->axis : NULL;
     const qc__exact_map map = {r->mesh, q->uv, q->bits, q->rotation, axis, q->point};
     double made = 0, quads;
-    qc_status status = qc__quantize(r->ctx, &map, scale, sized, q->values, &made);
+    if (status == QC_OK) status = qc__quantize(r->ctx, &map, scale, sized, q->values, &made);
     if (status == QC_ERR_FAILED) {
         qc__log(r->ctx, QC_LOG_INFO, "no quantization: %s", qc_ctx_error(r->ctx)->text);
         qc__clear_error(r->ctx);

@@ -2,6 +2,7 @@
  * has the same for maps with integer translations). */
 #include "sdk/map/periods/snap.h"
 #include <math.h>
+#include "sdk/map/quantize/exact_sign.h"
 
 enum {
     WIDTH = 40, /* |value| < 2^WIDTH units: sums of some thousands of them are exact in doubles */
@@ -30,26 +31,13 @@ static double rounded(double x, int32_t bits) {
     return ldexp(rint(ldexp(x, bits)), -bits);
 }
 
-/* --- exact orientation ------------------------------------------------------------------------ */
-
-/* a in units, |a| < 2^41, is 2^21 high + low. */
-static void halves(double a, int32_t bits, int64_t *high, int64_t *low) {
-    const int64_t units = (int64_t)ldexp(a, bits);
-    *low = units & 0x1fffff;
-    *high = (units - *low) / 0x200000;
+static qc__point difference(const snapper *s, qc_complex a, qc_complex b) {
+    return (qc__point){(int64_t)ldexp(a.re - b.re, s->bits), (int64_t)ldexp(a.im - b.im, s->bits)};
 }
 
-/* Whether face t is positive. The products of halves are below 2^62. */
 static bool is_positive(const snapper *s, int32_t t) {
     const qc_complex *p = s->f + 3 * (int64_t)t;
-    int64_t high[2], low[2];
-    halves(p[1].re - p[0].re, s->bits, &high[0], &low[0]);
-    halves(p[1].im - p[0].im, s->bits, &high[1], &low[1]);
-    const int64_t u = (int64_t)ldexp(p[2].re - p[0].re, s->bits);
-    const int64_t v = (int64_t)ldexp(p[2].im - p[0].im, s->bits);
-    const int64_t minor = low[0] * v - low[1] * u, carry = minor & 0x1fffff;
-    const int64_t major = high[0] * v - high[1] * u + (minor - carry) / 0x200000;
-    return major > 0 || (major == 0 && carry > 0);
+    return qc__area_sign(difference(s, p[1], p[0]), difference(s, p[2], p[0])) > 0;
 }
 
 /* --- slivers ---------------------------------------------------------------------------------- */
