@@ -131,7 +131,7 @@ class PolygonMesh(Object):
         """From positions (n x 3) and corners: an array (m x k) or a list of lists.
 
         Attributes are {name: array (n,) or (n, k)}: whole numbers are labels, "normal" is a
-        direction, all else can be interpolated. face_group: one number a face, 0 = none."""
+        direction, all else can be interpolated; "colour" is 0..1, or bytes. face_group: one number a face, 0 = none."""
         vertices = np.ascontiguousarray(vertices, np.float64)
         if vertices.ndim != 2 or vertices.shape[1] != 3:
             raise ValueError("vertices have shape %s; give (n, 3)" % (vertices.shape,))
@@ -164,6 +164,8 @@ class PolygonMesh(Object):
         if array.ndim not in (1, 2) or len(array) != n or 0 in array.shape[1:]:
             raise ValueError("attribute %r has shape %s; give (%d,) or (%d, k)"
                              % (name, array.shape, n, n))
+        if name == "colour" and array.dtype == np.uint8:
+            array = array / 255
         kind = (lib.QC_ATTRIBUTE_LABEL if array.dtype.kind in "iub" else
                 lib.QC_ATTRIBUTE_DIRECTION if name == "normal" else lib.QC_ATTRIBUTE_LINEAR)
         values, out = np.ascontiguousarray(array, np.float64), ffi.new("double **")

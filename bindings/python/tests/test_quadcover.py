@@ -42,6 +42,7 @@ class Remeshing(unittest.TestCase):
         part = (v[f].mean(1)[:, 0] > 0.5).astype(int)
         result = qc.remesh(v, f, quads=100, mode="fast", face_group=1 + part, keep_materials=True,
                            vertex_attributes={"skin": weights, "heat": v[:, 1],
+                                              "colour": np.full((len(v), 3), 51, np.uint8),
                                               "normal": np.tile([0, 0, 1.0], (len(v), 1))},
                            face_attributes={"part": part})
         a = result.attributes
@@ -49,6 +50,7 @@ class Remeshing(unittest.TestCase):
         self.assertTrue(np.allclose(a["skin"][:, 1], result.vertices[:, 0]))
         self.assertTrue(np.allclose(a["heat"], result.vertices[:, 1]))
         self.assertTrue(np.allclose(a["normal"], [0, 0, 1]))
+        self.assertTrue(np.allclose(a["colour"], 0.2))
         part = result.face_attributes["part"]
         self.assertEqual(part.dtype.kind, "i")
         self.assertTrue((result.polygons.face_group == 1 + part).all())

@@ -92,12 +92,19 @@ static int64_t row(const qc__ply_property *p, const qc__ply_property *end) {
     return n;
 }
 
+/* A coordinate which the file gives twice. */
+static bool is_repeated(const plan *a, const qc__ply_property *p) {
+    return a->at == QC_AT_VERTEX &&
+           (qc__ply_is(p, "x") || qc__ply_is(p, "y") || qc__ply_is(p, "z"));
+}
+
 static qc_status take_others(plan *a) {
     const qc__ply_property *end = a->p + a->e->n_properties;
     qc_status status = QC_OK;
     for (qc__ply_property *p = a->p; p < end && status == QC_OK; p++) {
         if (a->h->n_values >= MOST_VALUES) break;
-        if (p->count_type != QC__PLY_NONE || p->slot >= 0 || p->length == 0) continue;
+        if (p->count_type != QC__PLY_NONE || p->slot >= 0 || p->length == 0 || is_repeated(a, p))
+            continue;
         const int64_t n = row(p, end);
         const bool label = is_whole(p) && !qc__ply_is(p, "quality");
         for (int64_t k = 0; k < n; k++) p[k].slot = a->n_slots + k;

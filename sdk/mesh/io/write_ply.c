@@ -1,34 +1,24 @@
 /* Writing PLY, as text or binary little endian: vertices, faces and feature edges with all
  * attributes, uvs, groups and their names. Colours are bytes, labels int, the rest double. */
-#include "output.h"
-
 #include <math.h>
-#include <stdarg.h>
-#include <string.h>
 
-typedef struct writer {
-    qc__output *o;
-    const qc_polygon_mesh *m;
-    bool ascii, begun;  /* begun: a number stands on this line of text */
-    const char *count;  /* type of the lengths of lists */
-    int32_t *vertex_uv; /* n_vertices, -1 = none: when no vertex has two uvs; else NULL */
-} writer;
+#include "write_ply.h"
 
 /* --- numbers --------------------------------------------------------------------------------- */
 
-static void put_bytes(writer *w, uint64_t bits, size_t n) {
+static void put_bytes(qc__ply_writer *w, uint64_t bits, size_t n) {
     char bytes[8];
     for (size_t i = 0; i < n; i++) bytes[i] = (char)(unsigned char)(bits >> (8 * i));
     qc__put_text(w->o, bytes, n);
 }
 
-static void put_blank(writer *w) {
+static void put_blank(qc__ply_writer *w) {
     if (w->begun) qc__put_char(w->o, ' ');
     w->begun = true;
 }
 
 /* uchar or int */
-static void put_whole(writer *w, int32_t x, bool is_byte) {
+static void put_whole(qc__ply_writer *w, int32_t x, bool is_byte) {
     if (!w->ascii) {
         put_bytes(w, (uint32_t)x, is_byte ? 1 : 4);
         return;
@@ -38,7 +28,7 @@ static void put_whole(writer *w, int32_t x, bool is_byte) {
     qc__put_int(w->o, x < 0 ? (int32_t)(0 - (uint32_t)x) : x);
 }
 
-static void put_real(writer *w, double x) {
+static void put_real(qc__ply_writer *w, double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
     if (!w->ascii) {
@@ -49,36 +39,19 @@ static void put_real(writer *w, double x) {
     qc__put_double(w->o, x);
 }
 
-static void end_line(writer *w) {
+static void end_line(qc__ply_writer *w) {
     if (w->ascii) qc__put_char(w->o, '\n');
     w->begun = false;
 }
 
-static void put_length(writer *w, int32_t n) {
+static void put_length(qc__ply_writer *w, int32_t n) {
     put_whole(w, n, strcmp(w->count, "uchar") == 0);
 }
 
-/* --- attributes ------------------------------------------------------------------------------ */
+/* --- the elements ---------------------------------------------------------------------------- */
 
-static bool is_colour(const qc_attribute *a) {
-    return strcmp(a->name, "colour") == 0 && (a->width == 3 || a->width == 4);
-}
-
-/* Whole numbers of 32 bits. */
-static bool is_int(const qc_polygon_mesh *m, const qc_attribute *a) {
-    const int64_t n = (int64_t)a->width * qc_polygon_mesh_elements(m, a->at);
-    if (a->kind != QC_ATTRIBUTE_LABEL) return false;
-    for (int64_t i = 0; i < n; i++)
-        if (!(fabs(a->value[i]) <= INT32_MAX) || a->value[i] != floor(a->value[i])) return false;
-    return true;
-}
-
-static const char *type_of(const writer *w, const qc_attribute *a) {
-    return is_colour(a) ? "uchar" : is_int(w->m, a) ? "int" : "double";
-}
-
-static void put_value(writer *w, const qc_attribute *a, const char *type, double x) {
-    if (is_colour(a))
+static void put_value(qc__ply_writer *w, const qc_attribute *a, const char *type, double x) {
+    if (qc__ply_is_colour(a))
         put_whole(w, (int32_t)(255 * fmin(fmax(x, 0), 1) + 0.5), true);
     else if (*type == 'i')
         put_whole(w, (int32_t)x, false);
@@ -87,7 +60,7 @@ static void put_value(writer *w, const qc_attribute *a, const char *type, double
 }
 
 /* The values of element i; types[k] is the type of attribute k. */
-static void put_values(writer *w, const char *const *types, int32_t at, int64_t i) {
+static void put_values(qc__ply_writer *w, const char *const *types, int32_t at, int64_t i) {
     for (int32_t k = 0; k < w->m->n_attributes; k++) {
         const qc_attribute *a = &w->m->attribute[k];
         for (int32_t j = 0; a->at == at && j < a->width; j++)
@@ -95,93 +68,7 @@ static void put_values(writer *w, const char *const *types, int32_t at, int64_t 
     }
 }
 
-/* --- the header ------------------------------------------------------------------------------ */
-
-static void QC__PRINTF(2, 3) put_line(writer *w, const char *format, ...) {
-    char text[256];
-    va_list args;
-    va_start(args, format);
-    const int n = vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    qc__put_text(w->o, text, n < 0 ? 0 : (size_t)n < sizeof text ? (size_t)n : sizeof text - 1);
-}
-
-static void put_count(writer *w, const char *element, int32_t n) {
-    put_line(w, "element %s %d\n", element, (int)n);
-}
-
-/* A name without blanks, shortened. */
-static void plain_name(const char *name, char out[128]) {
-    snprintf(out, 128, "%.120s", name);
-    for (char *c = out; *c; c++)
-        if ((unsigned char)*c <= ' ') *c = '_';
-}
-
-static void declare(writer *w, const qc_attribute *a, const char *type) {
-    static const char *const rgba[] = {"red", "green", "blue", "alpha"};
-    static const char *const xyz[] = {"nx", "ny", "nz"};
-    const bool normal = strcmp(a->name, "normal") == 0 && a->width == 3;
-    char name[128], numbered[144];
-    plain_name(a->name, name);
-    for (int32_t j = 0; j < a->width; j++) {
-        snprintf(numbered, sizeof numbered, "%s_%d", name, (int)j);
-        put_line(w, "property %s %s\n", type,
-                 is_colour(a)   ? rgba[j]
-                 : normal       ? xyz[j]
-                 : a->width > 1 ? numbered
-                                : name);
-    }
-}
-
-static void declare_all(writer *w, const char *const *types, int32_t at) {
-    for (int32_t k = 0; k < w->m->n_attributes; k++)
-        if (w->m->attribute[k].at == at) declare(w, &w->m->attribute[k], types[k]);
-}
-
-static void put_groups(writer *w) {
-    for (int32_t g = 0; g < w->m->n_groups; g++) {
-        char prefix[32];
-        snprintf(prefix, sizeof prefix, "comment group %d ", (int)g + 1);
-        qc__put_comment(w->o, prefix, w->m->group_name[g]);
-    }
-    qc__put_comment(w->o, "comment ", w->m->materials);
-}
-
-static void put_face_header(writer *w, const char *const *types) {
-    const qc_polygon_mesh *m = w->m;
-    char name[128];
-    put_count(w, "face", m->n_faces);
-    put_line(w, "property list %s int vertex_indices\n", w->count);
-    if (m->uv && !w->vertex_uv) put_line(w, "property list %s double texcoord\n", w->count);
-    for (int32_t k = 0; k < m->n_attributes; k++) {
-        if (m->attribute[k].at != QC_AT_CORNER) continue;
-        plain_name(m->attribute[k].name, name);
-        put_line(w, "property list %s double %s\n", w->count, name);
-    }
-    if (m->face_group) put_line(w, "property int group\n");
-    declare_all(w, types, QC_AT_FACE);
-}
-
-static void put_header(writer *w, const char *const *types, const char *comment) {
-    static const char *const xyz[] = {"x", "y", "z"}, *const st[] = {"s", "t"};
-    put_line(w, "ply\nformat %s 1.0\n", w->ascii ? "ascii" : "binary_little_endian");
-    qc__put_comment(w->o, "comment ", comment);
-    put_groups(w);
-    put_count(w, "vertex", w->m->n_vertices);
-    for (int k = 0; k < 3; k++) put_line(w, "property double %s\n", xyz[k]);
-    for (int k = 0; w->vertex_uv && k < 2; k++) put_line(w, "property double %s\n", st[k]);
-    declare_all(w, types, QC_AT_VERTEX);
-    put_face_header(w, types);
-    if (w->m->n_lines > 0) {
-        put_count(w, "edge", w->m->n_lines);
-        put_line(w, "property int vertex1\nproperty int vertex2\n");
-    }
-    put_line(w, "end_header\n");
-}
-
-/* --- the elements ---------------------------------------------------------------------------- */
-
-static void put_vertex(writer *w, const char *const *types, int64_t v) {
+static void put_vertex(qc__ply_writer *w, const char *const *types, int64_t v) {
     for (int k = 0; k < 3; k++) put_real(w, w->m->position[3 * v + k]);
     for (int k = 0; w->vertex_uv && k < 2; k++) {
         const int32_t i = w->vertex_uv[v];
@@ -192,7 +79,7 @@ static void put_vertex(writer *w, const char *const *types, int64_t v) {
 }
 
 /* uvs of a face whose corners all have one; an empty list otherwise. */
-static void put_uvs(writer *w, int32_t begin, int32_t end) {
+static void put_uvs(qc__ply_writer *w, int32_t begin, int32_t end) {
     bool all = true;
     for (int32_t c = begin; c < end; c++) all = all && w->m->corner_uv[c] >= 0;
     put_length(w, all ? 2 * (end - begin) : 0);
@@ -200,7 +87,7 @@ static void put_uvs(writer *w, int32_t begin, int32_t end) {
         for (int k = 0; k < 2; k++) put_real(w, w->m->uv[2 * (int64_t)w->m->corner_uv[c] + k]);
 }
 
-static void put_face(writer *w, const char *const *types, int64_t f) {
+static void put_face(qc__ply_writer *w, const char *const *types, int64_t f) {
     const qc_polygon_mesh *m = w->m;
     const int32_t begin = m->face_offset[f], end = m->face_offset[f + 1];
     put_length(w, end - begin);
@@ -218,7 +105,7 @@ static void put_face(writer *w, const char *const *types, int64_t f) {
     end_line(w);
 }
 
-static bool put_elements(qc_ctx *ctx, writer *w, const char *const *types) {
+static bool put_elements(qc_ctx *ctx, qc__ply_writer *w, const char *const *types) {
     const qc_polygon_mesh *m = w->m;
     const int64_t nv = m->n_vertices, nf = m->n_faces, n = nv + nf + m->n_lines;
     for (int64_t i = 0; i < n && !w->o->failed; i++) {
@@ -238,7 +125,7 @@ static bool put_elements(qc_ctx *ctx, writer *w, const char *const *types) {
 /* --- what fits the format -------------------------------------------------------------------- */
 
 /* One uv for each vertex, when every corner has one and no vertex two. */
-static qc_status find_vertex_uvs(qc_ctx *ctx, writer *w) {
+static qc_status find_vertex_uvs(qc_ctx *ctx, qc__ply_writer *w) {
     const qc_polygon_mesh *m = w->m;
     int32_t *found = m->uv ? QC__NEW(ctx, int32_t, m->n_vertices) : NULL;
     bool one = found != NULL;
@@ -269,27 +156,45 @@ static const char *count_type(const qc_polygon_mesh *m) {
     return most < 256 ? "uchar" : "int";
 }
 
+/* Names which would be read as something else. */
 static qc_status check_names(qc_ctx *ctx, const qc_polygon_mesh *m) {
-    static const char *const taken[] = {"x", "y", "z", "s", "t", "group"};
-    for (int32_t k = 0; k < m->n_attributes; k++)
-        for (size_t i = 0; i < sizeof taken / sizeof *taken; i++)
-            if (m->attribute[k].width == 1 && strcmp(m->attribute[k].name, taken[i]) == 0)
-                return qc__fail(ctx, QC_ERR_ARGUMENT, k,
-                                "an attribute '%s' cannot be written as PLY, where that has a "
-                                "meaning; rename it",
-                                taken[i]);
+    for (int32_t k = 0; k < m->n_attributes; k++) {
+        const qc_attribute *a = &m->attribute[k];
+        const bool coordinate =
+            a->at == QC_AT_VERTEX && strchr("xyz", a->name[0]) && a->name[1] == 0;
+        const bool group =
+            a->at == QC_AT_FACE && a->kind == QC_ATTRIBUTE_LABEL && strcmp(a->name, "group") == 0;
+        if (a->width == 1 && (coordinate || group))
+            return qc__fail(ctx, QC_ERR_ARGUMENT, k,
+                            "an attribute '%s' cannot be written as PLY, where that has a meaning; "
+                            "rename it",
+                            a->name);
+    }
     return QC_OK;
+}
+
+/* Whole numbers of 32 bits. */
+static bool is_int(const qc_polygon_mesh *m, const qc_attribute *a) {
+    const int64_t n = (int64_t)a->width * qc_polygon_mesh_elements(m, a->at);
+    if (a->kind != QC_ATTRIBUTE_LABEL) return false;
+    for (int64_t i = 0; i < n; i++)
+        if (!(fabs(a->value[i]) <= INT32_MAX) || a->value[i] != floor(a->value[i])) return false;
+    return true;
+}
+
+static const char *type_of(const qc__ply_writer *w, const qc_attribute *a) {
+    return qc__ply_is_colour(a) ? "uchar" : is_int(w->m, a) ? "int" : "double";
 }
 
 qc_status qc__write_ply(qc_ctx *ctx, qc__output *o, const qc_polygon_mesh *m, bool ascii,
                         const char *comment) {
-    writer w = {.o = o, .m = m, .ascii = ascii, .count = count_type(m)};
+    qc__ply_writer w = {.o = o, .m = m, .ascii = ascii, .count = count_type(m)};
     const char **types = QC__NEW(ctx, const char *, m->n_attributes);
     qc_status status = types ? check_names(ctx, m) : QC_ERR_NOMEM;
     if (status == QC_OK) status = find_vertex_uvs(ctx, &w);
     if (status == QC_OK) {
         for (int32_t k = 0; k < m->n_attributes; k++) types[k] = type_of(&w, &m->attribute[k]);
-        put_header(&w, types, comment);
+        qc__ply_write_header(&w, types, comment);
         if (!put_elements(ctx, &w, types)) status = QC_ERR_CANCELLED;
     }
     qc__free(types);

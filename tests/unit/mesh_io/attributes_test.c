@@ -186,6 +186,29 @@ static void off_keeps_the_shape(void **state) {
     qc_object_release(m);
 }
 
+/* Whatever a PLY file calls its numbers, what is read can be written, and reads back the same. */
+static void odd_names(void **state) {
+    qc_polygon_mesh *m = parse_text(*state,
+                                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                                    "property float y\nproperty float z\nproperty float x\n"
+                                    "property float s\nproperty float red\nproperty float u\n"
+                                    "property float v\nproperty int a_0\nproperty float a_1\n"
+                                    "element face 1\nproperty list uchar int vertex_indices\n"
+                                    "property float x\nproperty float group\nend_header\n"
+                                    "0 0 0 9 1 2 3 4 5 6\n1 0 0 9 1 2 3 4 5 6\n"
+                                    "0 1 0 9 1 2 3 4 5 6\n3 0 1 2 7 8.5\n",
+                                    "a.ply");
+    assert_int_equal(m->n_attributes, 6); /* s, red, a_0, a_1; x, group of the face */
+    assert_null(m->face_group);
+    assert_int_equal(m->n_uvs, 3);
+    qc_polygon_mesh *n = round_trip(*state, m, "attributes_test.ply", QC_FORMAT_AUTO);
+    same_shape(m, n);
+    same_uvs(m, n);
+    same_attributes(m, n);
+    qc_object_release(n);
+    qc_object_release(m);
+}
+
 static void refusals(void **state) {
     qc_polygon_mesh *m = parse_text(*state, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj");
     double *x = NULL;
@@ -193,12 +216,12 @@ static void refusals(void **state) {
                      QC_ERR_ARGUMENT);
     assert_int_equal(qc_polygon_mesh_add_attribute(*state, m, "a", QC_AT_FACE, 0, 0, &x),
                      QC_ERR_ARGUMENT);
-    assert_int_equal(qc_polygon_mesh_add_attribute(*state, m, "s", QC_AT_VERTEX, 0, 1, &x), QC_OK);
+    assert_int_equal(qc_polygon_mesh_add_attribute(*state, m, "y", QC_AT_VERTEX, 0, 1, &x), QC_OK);
     assert_int_equal(qc_polygon_mesh_add_attribute(*state, m, "s", QC_AT_FACE, 0, 2, NULL), QC_OK);
     assert_int_equal(qc_polygon_mesh_add_attribute(*state, m, "s", QC_AT_FACE, 0, 2, NULL),
                      QC_ERR_ARGUMENT);
     assert_int_equal(qc_polygon_mesh_write(*state, m, "attributes_test.ply", NULL),
-                     QC_ERR_ARGUMENT); /* s is a uv there */
+                     QC_ERR_ARGUMENT); /* y is a coordinate there */
     assert_int_equal(qc_polygon_mesh_write_as(*state, m, "attributes_test.ply", 9, NULL),
                      QC_ERR_ARGUMENT);
     x[2] = NAN;
@@ -217,6 +240,7 @@ int main(void) {
         cmocka_unit_test(obj_keeps_the_usual),
         cmocka_unit_test(off_keeps_the_shape),
         cmocka_unit_test(groups_end),
+        cmocka_unit_test(odd_names),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
