@@ -6,23 +6,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { VALUE_HELP = 1, VALUE_FIRST = 2, MOST_OPTIONS = 64 };
+enum { VALUE_HELP = 1, VALUE_FIRST = 2, ROOM = CLI_MOST_OPTIONS + 2 };
 
 /* popt's table and the texts it allocated. */
 typedef struct storage {
-    struct poptOption table[MOST_OPTIONS];
+    struct poptOption table[ROOM]; /* those of the command, help, the end */
     char **text;
-    const char **list[MOST_OPTIONS]; /* items of CLI_LIST options */
-    const char **word;               /* argv with the full command name */
-    cli_given *given;                /* fewer than there are words */
+    const char **list[CLI_MOST_OPTIONS]; /* items of CLI_LIST options */
+    const char **word;                   /* argv with the full command name */
+    cli_given *given;                    /* fewer than there are words */
     int n_texts, n_lists, n_words, n_given;
     char command[64];
 } storage;
 
-static void fill_table(const cli_option *options, struct poptOption *table) {
+/* false: there are too many. */
+static bool fill_table(const cli_option *options, struct poptOption *table) {
     int n = 0;
     for (; options[n].name; n++) {
         const cli_option *o = &options[n];
+        if (n == CLI_MOST_OPTIONS) return false;
         const struct poptOption entry = {
             o->name,    o->letter,       o->kind == CLI_FLAG ? POPT_ARG_NONE : POPT_ARG_STRING,
             NULL,       VALUE_FIRST + n, o->doc,
@@ -34,6 +36,7 @@ static void fill_table(const cli_option *options, struct poptOption *table) {
     const struct poptOption end = POPT_TABLEEND;
     table[n] = help;
     table[n + 1] = end;
+    return true;
 }
 
 static bool parse_number(const char *text, double *value) {
@@ -113,7 +116,7 @@ static int set(const cli_option *o, char *text, storage *s) {
 static int bad_option(poptContext context, const cli_option *options, int code) {
     const char *name = poptBadOption(context, POPT_BADOPTION_NOALIAS);
     if (code != POPT_ERROR_BADOPT) return cli_error(EXIT_USAGE, "%s: %s", name, poptStrerror(code));
-    const char *names[MOST_OPTIONS];
+    const char *names[ROOM];
     size_t n = 0;
     for (; options[n].name; n++) names[n] = options[n].name;
     names[n++] = "help";
@@ -157,7 +160,12 @@ int cli_parse(int argc, const char **argv, const cli_option *options, int min_n,
     s->word = word;
     s->given = given;
     s->n_words = argc;
-    fill_table(options, s->table);
+    if (!fill_table(options, s->table)) {
+        free(s->given);
+        free(word);
+        free(s);
+        return cli_error(EXIT_FAILED, "%s: more options than there is room for", argv[0]);
+    }
     poptContext context = poptGetContext(NULL, argc, word, s->table, 0);
     poptSetOtherOptionHelp(context, synopsis);
     out->context = context;

@@ -29,17 +29,19 @@ typedef struct parsing {
     cli_arguments *arguments;
 } parsing;
 
-enum { N_OWN = 14, MOST_OPTIONS = 56 };
+enum { N_OWN = 14, ROOM = CLI_MOST_OPTIONS + 1 };
 
-/* Appends the options of remesh which batch has no meaning of its own for. */
-static void append_remesh(cli_option *table, const cli_option *remesh) {
+/* Appends the options of remesh which batch has no meaning of its own for. false: too many. */
+static bool append_remesh(cli_option *table, const cli_option *remesh) {
     int n = N_OWN;
-    for (; remesh->name && n < MOST_OPTIONS - 1; remesh++) {
+    for (; remesh->name; remesh++) {
         bool own = strcmp(remesh->name, "stats") == 0; /* always written */
         for (int i = 0; i < N_OWN; i++) own = own || strcmp(remesh->name, table[i].name) == 0;
-        if (!own) table[n++] = *remesh;
+        if (own) continue;
+        if (n == CLI_MOST_OPTIONS) return false;
+        table[n++] = *remesh;
     }
-    memset(&table[n], 0, sizeof table[n]);
+    return true; /* the rest of the table is zero */
 }
 
 static int keep_options(batch_settings *s, const cli_option *table,
@@ -64,7 +66,7 @@ static int keep_options(batch_settings *s, const cli_option *table,
 static int parse(const cli_option *remesh, void *user) {
     parsing *p = user;
     batch_settings *s = p->settings;
-    cli_option table[MOST_OPTIONS] = {
+    cli_option table[ROOM] = {
         {"output", 'o', CLI_TEXT, &s->output, 0, 0, NULL, "OUTDIR", "folder of the results"},
         {"jobs", 0, CLI_INTEGER, &s->jobs, 1, 4096, NULL, "N", "meshes at a time (default: cores)"},
         {"limit", 0, CLI_REAL, &s->limit, 0, 1e9, NULL, "SECONDS", "end a mesh which takes longer"},
@@ -82,11 +84,14 @@ static int parse(const cli_option *remesh, void *user) {
         {"collect", 0, CLI_FLAG, &s->collect, 0, 0, NULL, NULL, "gather what the tasks made"},
         {"progress", 0, CLI_CHOICE, &s->progress, 0, 0, cli_progress_names, "auto|plain|none",
          "auto: one line on a terminal; plain: a line a mesh; none"}};
-    append_remesh(table, remesh);
-    const int status = cli_parse(p->argc, p->argv, table, 0, 1, synopsis, about, p->arguments);
+    if (!append_remesh(table, remesh))
+        return cli_error(EXIT_FAILED, "batch: more options than there is room for");
+    int status = cli_parse(p->argc, p->argv, table, 0, 1, synopsis, about, p->arguments);
     if (status >= 0) return status;
     s->source = p->arguments->n > 0 ? p->arguments->positional[0] : NULL;
-    return keep_options(s, table, p->arguments);
+    status = keep_options(s, table, p->arguments);
+    if (status >= 0) cli_arguments_free(p->arguments);
+    return status;
 }
 
 static int check(const batch_settings *s) {

@@ -27,6 +27,7 @@ int cli_context_error(qc_ctx *ctx, const char *prefix, int fallback);
 
 /* --- arguments (popt) ---------------------------------------------------------------------- */
 
+enum { CLI_MOST_OPTIONS = 64 }; /* of a command */
 enum { CLI_FLAG, CLI_TEXT, CLI_REAL, CLI_INTEGER, CLI_CHOICE, CLI_LIST };
 
 typedef struct cli_list {
