@@ -31,6 +31,8 @@ template=$prefix/share/quadcover/template
 configure "$template" plugin
 configure "$template" headers_only -DHEADERS_ONLY=ON
 configure "$here/consumer" consumer
+mkdir "$scratch/cross" && ln -s "$prefix/$LIBDIR" "$scratch/cross/lib" # as Debian's /lib
+configure "$here/consumer" crossed -DQuadCover_DIR="$scratch/cross/lib/cmake/QuadCover"
 if [ -z "$SANITIZE" ] && command -v nm > /dev/null; then
     names=$(nm -D --defined-only "$scratch/plugin/smooth_field.so" | awk '$2 != "A" { print $3 }')
     [ "$names" = qc_plugin_1 ] || die "the plugin exports: $names"

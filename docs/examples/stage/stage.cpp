@@ -174,7 +174,9 @@ int main(int argc, char **argv) {
         remesh(ctx, argv[1], argv[2], argc > 3 ? argv[3] : "45");
     } catch (const Failure &) {
         const qc_error *error = qc_ctx_error(ctx);
-        return std::fprintf(stderr, "stage: %s: %s\n", error->stage, error->text), 1;
+        return std::fprintf(stderr, "%s: %s\n", *error->stage ? error->stage : "stage",
+                            error->text),
+               1;
     }
     return 0;
 }
