@@ -53,6 +53,7 @@ static int keep_options(batch_settings *s, const cli_option *table,
         const char *name = given->option->name;
         char *word =
             given->text ? batch_format("--%s=%s", name, given->text) : batch_format("--%s", name);
+        if (strcmp(name, "format") == 0) s->format = given->text;
         s->threads = s->threads || strcmp(name, "threads") == 0;
         if (json_array_append_new(s->options, word ? json_string(word) : NULL) != 0) {
             free(word);
@@ -117,6 +118,7 @@ int cli_batch(int argc, const char **argv) {
     cli_arguments arguments;
     memset(&s, 0, sizeof s);
     memset(&b, 0, sizeof b);
+    s.format = "auto";
     b.settings = &s;
     b.lock = -1;
     parsing p = {argc, argv, &s, &arguments};

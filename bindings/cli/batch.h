@@ -34,6 +34,7 @@ typedef struct batch_job {
     const char *folder, *cwd; /* absolute */
     const char *program;      /* path of this program */
     json_t *options;          /* array of words for `remesh` */
+    const char *extension;    /* of meshes: "obj" */
     bool uv, save_field, report;
     double limit, memory; /* seconds, megabytes; 0 = none */
 } batch_job;
@@ -125,8 +126,9 @@ typedef struct batch_settings {
     double limit, memory;
     bool again, skip_failed, uv, save_field, report, collect;
     int progress;
-    json_t *options; /* for remesh */
-    bool threads;    /* among them */
+    json_t *options;    /* for remesh */
+    const char *format; /* among them; "auto" */
+    bool threads;       /* among them */
 } batch_settings;
 
 /* A run of tasks of one folder. */

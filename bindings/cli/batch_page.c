@@ -117,18 +117,18 @@ static void print_done(FILE *out, const char *folder, const json_t *lines) {
     json_array_foreach(lines, i, line) {
         if (!batch_line_done(line)) continue;
         const char *name = batch_text(line, "name");
-        char *mesh = batch_format("%s.obj", name), *report = batch_format("report/%s.html", name);
+        const char *mesh = strrchr(batch_text(line, "output"), '/');
+        char *report = batch_format("report/%s.html", name);
         fputs("<tr><td>", out);
         print_picture(out, folder, name);
         fputs("<td class=\"text\">", out);
-        if (mesh) print_link(out, folder, mesh, name);
+        if (mesh) print_link(out, folder, mesh + 1, name);
         fputs("<td class=\"text\">", out);
         char *path = report ? batch_format("%s/%s", folder, report) : NULL;
         if (path && access(path, R_OK) == 0) print_link(out, folder, report, "report");
         for (int c = 0; c < N; c++) print_number(out, line, column[c].key, column[c].digits);
         fputc('\n', out);
         free(path);
-        free(mesh);
         free(report);
     }
     fputs("</table>\n", out);

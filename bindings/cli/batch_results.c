@@ -62,11 +62,10 @@ static bool is_output(const json_t *task, const char *path) {
 }
 
 void batch_tidy(const json_t *task, bool done) {
-    static const char *const kind[][2] = {{"", ".obj"},
-                                          {"", ".json"},
-                                          {"uv/", ".obj"},
-                                          {"field/", ".rawfield"},
-                                          {"report/", ".html"}};
+    static const char *const kind[][2] = {
+        {"", ".obj"},        {"", ".off"},    {"", ".ply"},    {"", ".json"},
+        {"uv/", ".obj"},     {"uv/", ".off"}, {"uv/", ".ply"}, {"field/", ".rawfield"},
+        {"report/", ".html"}};
     const char *folder = batch_text(task, "folder"), *name = batch_text(task, "name");
     for (size_t i = 0; i < sizeof kind / sizeof *kind; i++) {
         char *path = batch_format("%s/%s%s%s", folder, kind[i][0], name, kind[i][1]);

@@ -92,6 +92,12 @@ static json_t *choose(const batch *b) {
     return pending;
 }
 
+/* Of files in a format; "ply-ascii" is PLY, too. */
+static const char *extension(const char *format) {
+    if (strncmp(format, "ply", 3) == 0) return "ply";
+    return strcmp(format, "off") == 0 ? "off" : "obj";
+}
+
 static int make_tasks(batch *b) {
     const batch_settings *s = b->settings;
     json_t *meshes = NULL;
@@ -103,8 +109,8 @@ static int make_tasks(batch *b) {
         json_array_append_new(s->options, word ? json_string(word) : NULL);
         free(word);
     }
-    const batch_job job = {b->folder,     b->cwd,    b->program, s->options, s->uv,
-                           s->save_field, s->report, s->limit,   s->memory};
+    const batch_job job = {b->folder, b->cwd,        b->program, s->options, extension(s->format),
+                           s->uv,     s->save_field, s->report,  s->limit,   s->memory};
     if (status == EXIT_DONE && !(b->tasks = batch_tasks(meshes, &job)))
         status = cli_error(EXIT_FAILED, "out of memory, or a path is not UTF-8");
     json_decref(meshes);

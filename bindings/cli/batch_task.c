@@ -109,9 +109,11 @@ static json_t *task(const json_t *mesh, const batch_job *job) {
     snprintf(key, sizeof key, "%016" PRIx64, fingerprint(input, options, job));
     json_array_extend(command, options);
     json_decref(options);
-    product(command, outputs, "-o", batch_format("%s/%s.obj", folder, name));
+    product(command, outputs, "-o", batch_format("%s/%s.%s", folder, name, job->extension));
     product(command, outputs, "--stats", batch_format("%s/%s.json", folder, name));
-    if (job->uv) product(command, outputs, "--uv", batch_format("%s/uv/%s.obj", folder, name));
+    if (job->uv)
+        product(command, outputs, "--uv",
+                batch_format("%s/uv/%s.%s", folder, name, job->extension));
     if (job->save_field)
         product(command, outputs, "--save-field",
                 batch_format("%s/field/%s.rawfield", folder, name));

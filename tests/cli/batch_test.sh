@@ -78,6 +78,15 @@ run 0 batch in/b/x.obj -o fields --quads 200 --mode fast --field '{in}.rawfield'
 [ -e fields/field/x.rawfield ] && fail 'a file of other options beside a result'
 grep -q '"exit":0' fields/results.jsonl || fail 'no field'
 
+# Other formats have other extensions.
+run 0 batch in/b/x.obj -o fields --quads 200 --mode fast --format ply-ascii --uv
+[ "$(head -n 2 fields/x.ply | tr '\n' ' ')" = 'ply format ascii 1.0 ' ] || fail 'no PLY'
+[ -s fields/uv/x.ply ] || fail 'no map as PLY'
+[ -e fields/x.obj ] && fail 'OBJ beside PLY'
+grep -q 'href="x.ply"' fields/summary.html || fail 'no link to PLY'
+run 0 batch in/b/x.obj -o fields --quads 200 --mode fast --format ply-ascii --uv --progress plain
+[ -s err ] && fail "PLY was made again: $(cat err)"
+
 # Wrong usage costs nothing.
 cp in/out/results.jsonl kept
 before=$(mark)
