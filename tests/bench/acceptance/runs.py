@@ -60,13 +60,13 @@ def verdict(run, stats, check):
 
 
 def limited(a, command):
-    """The command in a shell which has the limits; 20 times the CPU time ends what hangs."""
-    limits = f"ulimit -t {a.limit}" + (f"; ulimit -v {1024 * a.memory}" if a.memory else "")
+    """The command in a shell which has the limits; that of time sends SIGXCPU."""
+    limits = f"ulimit -S -t {a.limit}" + (f"; ulimit -v {1024 * a.memory}" if a.memory else "")
     return ["sh", "-c", limits + '; exec "$@"', "sh", *command]
 
 
 def wait(a, child):
-    """Exit status, CPU seconds and memory in MB of the child."""
+    """Exit status, CPU seconds and memory in MB of the child, which is killed when it hangs."""
     clock = threading.Timer(20 * a.limit, child.kill)
     clock.start()
     usage = os.wait4(child.pid, 0)
@@ -75,9 +75,9 @@ def wait(a, child):
     return child.returncode, usage[2].ru_utime + usage[2].ru_stime, usage[2].ru_maxrss / 1024
 
 
-def failure(a, code, seconds, last):
+def failure(a, code, last):
     """(status, text) of a run which did not end with status 0."""
-    if code in (-signal.SIGXCPU, -signal.SIGKILL) and seconds >= a.limit - 1:
+    if code == -signal.SIGXCPU:
         return TIME, f"no result within {a.limit} s. {last}"
     if code == 1 and "memory" in last:
         return MEMORY, last
@@ -99,7 +99,7 @@ def execute(a, folder, run):
     outcome = {"key": key(run, a.set), "build": a.build, "seconds": round(seconds, 3), "megabytes": round(megabytes),
                "warnings": [], "quads": 0}
     if code:
-        status, text = failure(a, code, seconds, lines[-1])
+        status, text = failure(a, code, lines[-1])
     else:
         check = subprocess.run([a.program, "check", stem + ".obj", "--against", run.model.path, "--json"],
                                capture_output=True, text=True)
