@@ -21,7 +21,8 @@ enum { MODE_NONE = 0, MODE_FAST, MODE_RELOCATE, MODE_BEST }; /* none = best */
 static const char *const modes[] = {"", "fast", "relocate", "best", NULL};
 
 typedef struct settings {
-    const char *input, *output, *field, *stroke_rays, *save_field, *uv, *pipeline, *stats, *report;
+    const char *input, *output, *field, *symmetry, *stroke_rays, *save_field, *uv, *pipeline,
+        *stats, *report;
     char *command; /* as given; owned */
     double quads, edge_length, edge_length_rel, sharp;
     bool no_features, keep_materials, strict;
@@ -57,6 +58,8 @@ static int with_options(settings *s, cli_options_user *use, void *user) {
          "branch point optimisation: none, move only, Algorithm 6.1"},
         {"field", 0, CLI_TEXT, &s->field, 0, 0, NULL, "FILE",
          "use this cross field (.rawfield or .rosy)"},
+        {"symmetry", 0, CLI_TEXT, &s->symmetry, 0, 0, NULL, "auto|x|y|z|off|nx,ny,nz,d",
+         "remesh one half and mirror it at this plane (default off)"},
         {"save-field", 0, CLI_TEXT, &s->save_field, 0, 0, NULL, "F.rawfield",
          "write the cross field"},
         {"stroke-rays", 0, CLI_TEXT, &s->stroke_rays, 0, 0, NULL, "RAYS.json",
@@ -177,9 +180,22 @@ static int build_pipeline(run *r, const settings *s) {
     return cli_pipeline(r->session.ctx, r->registry, s->pipeline, &options, &s->set, &r->pipeline);
 }
 
-static int compute(run *r, const settings *s) {
+static qc_remesh_options remesh_options(const settings *s) {
     qc_remesh_options options = QC_REMESH_OPTIONS_INIT;
     options.strict = s->strict;
+    options.symmetry = s->symmetry;
+    return options;
+}
+
+static int check_options(run *r, const settings *s) {
+    const qc_remesh_options options = remesh_options(s);
+    return qc_remesh_check(r->session.ctx, &options) == QC_OK
+               ? EXIT_DONE
+               : cli_session_error(&r->session, "--symmetry", EXIT_USAGE);
+}
+
+static int compute(run *r, const settings *s) {
+    const qc_remesh_options options = remesh_options(s);
     if (qc_remesh(r->session.ctx, r->pipeline, r->input, &options, &r->result) != QC_OK)
         return cli_session_error(&r->session, s->input, EXIT_FAILED);
     for (int32_t i = 0; i < r->result.n_warnings; i++)
@@ -256,7 +272,8 @@ static int write_all(run *r, const settings *s) {
 
 static int work(run *r, const settings *s) {
     const double start = cli_seconds();
-    int status = build_pipeline(r, s);
+    int status = check_options(r, s);
+    if (status == EXIT_DONE) status = build_pipeline(r, s);
     if (status == EXIT_DONE) status = cli_read_mesh(&r->session, s->input, &r->input);
     if (status == EXIT_DONE && s->stroke_rays)
         status = cli_add_strokes(&r->session, r->registry, s->stroke_rays, &r->input);

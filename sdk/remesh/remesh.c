@@ -3,6 +3,7 @@
 
 #include "sdk/finish/internal.h"
 #include "sdk/remesh/internal.h"
+#include "sdk/remesh/symmetry.h"
 
 /* Share of the progress bar for the steps on the whole input. */
 #define WHOLE 0.05
@@ -15,6 +16,11 @@ typedef struct job {
     qc_bag *whole;
     qc__parts parts;
     qc__collection all;
+    qc__symmetry symmetry;
+    qc_plane plane;
+    qc_mesh *half; /* the part on one side of the plane, the components of which are remeshed; NULL:
+                      those of the whole */
+    bool torn;     /* the halves do not fit together */
     const qc_remesh_options *options;
     qc_remesh_result *result;
 } job;
@@ -29,7 +35,16 @@ static uint32_t split_after(const qc_pipeline *pipeline) {
     return 0;
 }
 
-/* The bag of the whole input with the component in place of the mesh. */
+/* The step which finds features; NULL = none. */
+static const char *features_step(const job *j) {
+    for (uint32_t i = j->split; i < qc_pipeline_count(j->pipeline); i++)
+        if (strcmp(qc_pipeline_step_stage(j->pipeline, i)->id, "qc.features") == 0)
+            return qc_pipeline_step_name(j->pipeline, i);
+    return NULL;
+}
+
+/* The bag of the whole input with the component in place of the mesh; where no step finds features,
+ * the boundary of a half on the plane is one. */
 static qc_status component_bag(const job *j, int32_t c, qc_bag **out) {
     qc_mesh *part = NULL;
     qc_bag *bag = NULL;
@@ -38,7 +53,13 @@ static qc_status component_bag(const job *j, int32_t c, qc_bag **out) {
     for (uint32_t i = 0; status == QC_OK && i < qc_bag_count(j->whole); i++) {
         const char *name = qc_bag_name(j->whole, i);
         const void *object = qc_bag_get(j->whole, name);
-        status = qc_bag_put(bag, name, object == j->parts.mesh ? part : object);
+        status = qc_bag_put(bag, name, object == j->result->mesh ? part : object);
+    }
+    if (status == QC_OK && j->half && !features_step(j)) {
+        qc_features *border = NULL;
+        status = qc__border_features(j->ctx, part, &j->plane, &border);
+        if (status == QC_OK) status = qc_bag_put(bag, "border", border);
+        qc_object_release(border);
     }
     qc_object_release(part);
     if (status == QC_OK)
@@ -95,7 +116,7 @@ static qc_status run_components(job *j) {
     const int32_t n = j->parts.n;
     kept_error first = {QC_OK, -1, "", ""};
     qc__density density;
-    const bool shared = n > 1 && qc__density_find(j->pipeline, j->split, &density);
+    const bool shared = (n > 1 || j->half) && qc__density_find(j->pipeline, j->split, &density);
     qc_status status = QC_OK;
     for (int32_t c = 0; c < n && status == QC_OK; c++) {
         const double faces = j->parts.mesh->n_faces;
@@ -103,7 +124,7 @@ static qc_status run_components(job *j) {
             qc__range_begin(j->ctx, NULL, WHOLE + (1 - WHOLE) * j->parts.face_start[c] / faces,
                             WHOLE + (1 - WHOLE) * j->parts.face_start[c + 1] / faces);
         if (shared)
-            status = qc__density_share(j->pipeline, &density, j->parts.mesh, j->parts.area[c]);
+            status = qc__density_share(j->pipeline, &density, j->result->mesh, j->parts.area[c]);
         const double left = faces - j->parts.face_start[c];
         const double part = j->parts.face_start[c + 1] - j->parts.face_start[c];
         const qc__time time = qc__time_share(j->ctx, part / left);
@@ -134,7 +155,21 @@ static qc_status run_whole(job *j, const qc_polygon_mesh *input) {
     j->result->repairs = qc_object_retain(qc_bag_latest(j->whole, QC_TYPE_REPAIR_REPORT));
     const qc_mesh *mesh = qc_bag_latest(j->whole, QC_TYPE_MESH);
     j->result->mesh = qc_object_retain(mesh);
-    return qc__parts_create(j->ctx, mesh, &j->parts);
+    if (j->symmetry.wanted)
+        status = qc__symmetry_cut(j->ctx, &j->symmetry, mesh, j->result, &j->plane, &j->half);
+    return status == QC_OK ? qc__parts_create(j->ctx, j->half ? j->half : mesh, &j->parts) : status;
+}
+
+/* The components of a half, with quads along its boundary. */
+static qc_status run_half(job *j) {
+    const char *step = features_step(j);
+    const char *text = step ? qc_pipeline_get(j->pipeline, step, "hard") : NULL;
+    const bool soft = text && strcmp(text, "false") == 0;
+    qc_status status = soft ? qc_pipeline_set(j->pipeline, step, "hard", "true") : QC_OK;
+    if (status == QC_OK) status = run_components(j);
+    if (!soft) return status;
+    const qc_status restored = qc_pipeline_set(j->pipeline, step, "hard", "false");
+    return status == QC_OK ? restored : status;
 }
 
 /* Whether borders of groups are hard features of some step. */
@@ -164,7 +199,7 @@ static qc_status keep_attributes(job *j, const qc_polygon_mesh *input) {
     if (!j->result->quads || (input->n_attributes == 0 && !input->face_group && !input->uv))
         return QC_OK;
     int32_t n_mixed = 0, first = -1;
-    const qc_status status = qc__quads_transfer(j->ctx, input, j->parts.mesh, j->result->quads,
+    const qc_status status = qc__quads_transfer(j->ctx, input, j->result->mesh, j->result->quads,
                                                 &quads, &n_mixed, &first);
     if (status != QC_OK) return status;
     qc_object_release(j->result->quads);
@@ -177,29 +212,63 @@ static qc_status run_job(job *j, const qc_polygon_mesh *input) {
     if (status == QC_OK) status = run_whole(j, input);
     if (status == QC_OK) status = qc__collection_create(j->ctx, j->parts.n, &j->all);
     if (status == QC_OK) {
-        status = run_components(j);
+        status = j->half ? run_half(j) : run_components(j);
         if (status == QC_OK) status = qc__collection_merge(j->ctx, &j->all, &j->parts, j->result);
         qc__collection_clear(&j->all, j->parts.n);
+        if (status == QC_OK && j->half) {
+            status = qc__mirror_results(j->ctx, j->half, &j->plane, j->result);
+            j->torn = status == QC_ERR_FAILED;
+        }
         if (status == QC_OK) status = keep_attributes(j, input);
     }
     qc__parts_clear(&j->parts);
+    qc_object_release(j->half);
+    j->half = NULL;
     qc_bag_free(j->whole);
+    j->whole = NULL;
     return status;
+}
+
+/* Once more, without symmetry, where the halves did not fit together. */
+static qc_status run_again(job *j, const qc_polygon_mesh *input) {
+    char reason[512];
+    snprintf(reason, sizeof reason, "%s", qc_ctx_error(j->ctx)->text);
+    qc__clear_error(j->ctx);
+    qc_remesh_result_clear(j->result);
+    j->symmetry.wanted = false;
+    const qc_status status =
+        qc__warn(j->ctx, j->result, "%s; the surface is remeshed as a whole", reason);
+    return status == QC_OK ? run_job(j, input) : status;
+}
+
+static void read_options(const qc_remesh_options *given, qc_remesh_options *out) {
+    const qc_remesh_options defaults = QC_REMESH_OPTIONS_INIT;
+    *out = defaults;
+    if (given)
+        memcpy(out, given, given->struct_size < sizeof *out ? given->struct_size : sizeof *out);
+}
+
+qc_status qc_remesh_check(qc_ctx *ctx, const qc_remesh_options *options) {
+    qc_remesh_options o;
+    qc__symmetry symmetry;
+    read_options(options, &o);
+    return qc__symmetry_parse(ctx, o.symmetry, &symmetry);
 }
 
 qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_mesh *input,
                     const qc_remesh_options *options, qc_remesh_result *result) {
-    qc_remesh_options o = QC_REMESH_OPTIONS_INIT;
-    if (options)
-        memcpy(&o, options, options->struct_size < sizeof o ? options->struct_size : sizeof o);
+    qc_remesh_options o;
     qc_remesh_result r;
+    read_options(options, &o);
     memset(&r, 0, sizeof r);
     job j = {.ctx = ctx, .pipeline = pipeline, .options = &o, .result = &r};
     j.split = split_after(pipeline);
     if (j.split == 0)
         return qc__fail(ctx, QC_ERR_WIRING, -1,
                         "no step of the pipeline outputs a %s; begin with qc.repair", QC_TYPE_MESH);
-    const qc_status status = run_job(&j, input);
+    qc_status status = qc__symmetry_parse(ctx, o.symmetry, &j.symmetry);
+    if (status == QC_OK) status = run_job(&j, input);
+    if (j.torn) status = run_again(&j, input);
     if (status == QC_OK)
         *result = r;
     else

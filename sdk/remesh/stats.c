@@ -100,6 +100,15 @@ static void add_pipeline(json_t *root, const qc_pipeline *pipeline) {
     json_object_set_new(root, "versions", versions);
 }
 
+/* The plane at which a half was mirrored. */
+static void add_mirror(json_t *root, const qc_report *r) {
+    const double *m = r->mirror;
+    if (m[0] == 0 && m[1] == 0 && m[2] == 0) return;
+    json_object_set_new(
+        root, "mirror",
+        json_pack("[o,o,o,o]", number(m[0]), number(m[1]), number(m[2]), number(m[3])));
+}
+
 static double peak_rss_mb(void) {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss / 1024 : 0;
@@ -127,6 +136,7 @@ static json_t *statistics(const qc_report *r, const qc_pipeline *pipeline,
         "max_seam_error", number(r->uv.max_seam_error), "arap_mean", number(f.arap_mean), /**/
         "quads", quads(r, &f), "seconds", seconds(pipeline, o), "peak_rss_mb",
         number(peak_rss_mb()), "mode", o->mode ? o->mode : "", "warnings", list);
+    if (root) add_mirror(root, r);
     if (root) add_pipeline(root, pipeline);
     return root;
 }

@@ -103,8 +103,8 @@ def _print(s, pipeline):
 
 def remesh(vertices, faces=None, *, quads=0.0, edge_length=0.0, edge_length_rel=0.0, mode="best",
            sharp=0.0, features=True, field=None, seed=0, keep_materials=False, pipeline=None,
-           set=None, strict=False, progress=None, vertex_attributes=None, face_attributes=None,
-           corner_attributes=None, face_group=None):
+           set=None, strict=False, symmetry=None, progress=None, vertex_attributes=None,
+           face_attributes=None, corner_attributes=None, face_group=None):
     """A triangle mesh becomes a pure quad mesh.
 
     vertices, faces   positions (n, 3) and corners (m, 3) or a list of polygons; or a PolygonMesh, a
@@ -118,6 +118,7 @@ def remesh(vertices, faces=None, *, quads=0.0, edge_length=0.0, edge_length_rel=
     pipeline          JSON of the steps instead of the default ones (see default_pipeline)
     set               {"step.parameter": value}
     strict            a component which fails fails the call
+    symmetry          "auto", "x", "y", "z" or a plane "nx,ny,nz,d": one half is remeshed and mirrored
     progress          progress(fraction, stage); False cancels (Cancelled), as Ctrl-C does
     vertex_attributes, face_attributes, corner_attributes, face_group   see PolygonMesh.from_arrays;
                       the result has them on the quads
@@ -139,8 +140,9 @@ def remesh(vertices, faces=None, *, quads=0.0, edge_length=0.0, edge_length_rel=
         step, _, parameter = name.rpartition(".")
         s.check(lib.qc_pipeline_set(steps, step.encode(), parameter.encode(),
                                     _as_text(value).encode()))
+    plane = ffi.NULL if symmetry is None else ffi.new("char[]", symmetry.encode())
     options = ffi.new("qc_remesh_options *", {"struct_size": ffi.sizeof("qc_remesh_options"),
-                                              "strict": int(strict)})
+                                              "strict": int(strict), "symmetry": plane})
     result = ffi.gc(ffi.new("qc_remesh_result *"), lib.qc_remesh_result_clear)
     with s.reporting(progress, lines):
         s.call(lib.qc_remesh, steps, soup._c, options, result)

@@ -231,6 +231,15 @@ class Arrays(unittest.TestCase):
         with self.assertRaises(ValueError):
             qc.Sizing.create(mesh, 0.1, stretch=stretch[1:])
 
+    def test_one_half_is_mirrored(self):
+        mesh = qc.shape("sphere", resolution=1000)
+        vertices, quads = qc.remesh(mesh, quads=200, symmetry="x")
+        there = {tuple(v) for v in vertices.tolist()}
+        self.assertEqual({(-x, y, z) for x, y, z in there}, there)
+        self.assertEqual(len(vertices) - len(quads), 2)
+        with self.assertRaises(qc.Error):
+            qc.remesh(mesh, quads=200, symmetry="sideways")
+
     def test_repairs_warn(self):
         v, f = square(6)
         with warnings.catch_warnings(record=True) as caught:

@@ -217,6 +217,7 @@ typedef struct qc_report {
         int64_t feature_edges;   /* lines of the quads                                           */
         double feature_distance; /* two-sided, of their ends and the vertices of the features    */
     } quads;
+    double mirror[4]; /* normal and offset of the plane at which a half was mirrored; 0 = none */
 } qc_report;
 QC_API qc_status qc_report_create(qc_ctx *ctx, qc_report **out); /* zeroes */
 QC_API void qc_report_add(qc_report *sum, const qc_report *part);

@@ -302,6 +302,29 @@ QC_API qc_status qc_features_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint
 QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double least,
                                    double sharp, uint8_t *edge);
 
+/* --- mirror symmetry -------------------------------------------------------------------------- */
+
+/* The points p with <normal, p> = offset; normal is a unit vector. */
+typedef struct qc_plane {
+    double normal[3], offset;
+} qc_plane;
+struct qc_closest_point;
+/* The plane about which the surface is symmetric, across a coordinate axis (0, 1, 2) or any (-1).
+ * *deviation is the largest distance of a mirrored point to the surface in diagonals of the
+ * bounding box; above `tolerance` a plane does not count, and *deviation is infinite and *plane
+ * untouched where there is none. Planes across coordinate axes come first; of equally good ones it
+ * is the first. closest NULL = builtin. Errors: ARGUMENT, NOMEM, CANCELLED. */
+QC_API qc_status qc_mesh_find_symmetry(qc_ctx *ctx, const qc_mesh *mesh, int32_t axis,
+                                       double tolerance, const struct qc_closest_point *closest,
+                                       qc_plane *plane, double *deviation);
+/* The part of the mesh where <normal, p> >= offset. Faces across the plane are cut, vertices nearer
+ * to it than a twentieth of their shortest edge are moved onto it, so the new boundary lies exactly
+ * in it. Source numbers are those of `mesh`, -1 for vertices on cut edges. Errors: ARGUMENT (no
+ * unit vector), FAILED (the plane does not cut the surface),
+ * NON_MANIFOLD (the part touches itself), NOMEM. */
+QC_API qc_status qc_mesh_half(qc_ctx *ctx, const qc_mesh *mesh, const qc_plane *plane,
+                              qc_mesh **out);
+
 /* --- repair ----------------------------------------------------------------------------------- */
 
 /* Kinds of repair, in the order they are made. */

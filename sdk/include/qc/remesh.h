@@ -46,10 +46,15 @@ QC_API qc_status qc_default_pipeline(qc_ctx *ctx, qc_registry *registry,
 
 typedef struct qc_remesh_options {
     uint32_t struct_size;
-    int32_t strict; /* 1: a component which fails fails the call */
+    int32_t strict;       /* 1: a component which fails fails the call */
+    const char *symmetry; /* NULL, "off": none; "auto": about any plane; "x", "y", "z": about one
+                             across that axis; "nx,ny,nz,d": about nx x + ny y + nz z = d */
 } qc_remesh_options;
 #define QC_REMESH_OPTIONS_INIT                                                                     \
-    { sizeof(qc_remesh_options), 0 }
+    { sizeof(qc_remesh_options), 0, NULL }
+
+/* ARGUMENT where qc_remesh would not understand its options. */
+QC_API qc_status qc_remesh_check(qc_ctx *ctx, const qc_remesh_options *options);
 
 /* Members are NULL when no step made them. */
 typedef struct qc_remesh_result {
@@ -71,7 +76,16 @@ typedef struct qc_remesh_result {
  * qc.size). A component that fails becomes a warning which names it, the stage and the reason,
  * unless strict or unless all fail; so does one whose quads are not a manifold of quads with its
  * number of boundary loops and its Euler characteristic. Where borders of groups are hard features
- * (qc.features: `groups`, `hard`) a warning names quads which cross one. Errors: those of the
+ * (qc.features: `groups`, `hard`) a warning names quads which cross one.
+ *
+ * With a plane of symmetry only the half on the side of its normal is remeshed, its boundary on the
+ * plane being a hard feature (parameter "hard" of the step of stage qc.features), and mirrored; the
+ * results are those of the whole surface, and the quads are symmetric, to the last bit where the
+ * plane is across a coordinate axis. Where "auto" finds none, or the plane does not cut the surface
+ * or the halves do not fit together, it is remeshed as a whole, with a warning. The surface counts
+ * as symmetric when mirrored points are within 0.5 % of the diagonal of it; a plane which is asked
+ * for
+ * ("x", ...) is used in any case, so that the half on its positive side wins. Errors: those of the
  * stages (qc_error.stage = the step); FAILED for such quads; CANCELLED. */
 QC_API qc_status qc_remesh(qc_ctx *ctx, qc_pipeline *pipeline, const qc_polygon_mesh *input,
                            const qc_remesh_options *options, qc_remesh_result *result);
