@@ -24,7 +24,8 @@ static void flag_features(const qc_run *r, const qc_mesh *mesh, uint8_t *flag) {
 
 static qc_status run(const qc_run *r, const void *raw) {
     const params *p = raw;
-    const qc_mesh *mesh = r->input(r, "mesh");
+    const qc_corner_map *map = r->input(r, "map");
+    const qc_mesh *mesh = map ? map->mesh : r->input(r, "mesh");
     qc_relax_options options = QC_RELAX_OPTIONS_INIT;
     options.rounds = (int32_t)p->rounds;
     options.quality = p->quality;
@@ -45,11 +46,11 @@ static qc_status run(const qc_run *r, const void *raw) {
 
 static const qc_port in[] = {
     {"quads", QC_TYPE_POLYGON_MESH, 0, "pure quad mesh"},
-    {"mesh", QC_TYPE_MESH, 0, "the surface its source faces count"},
+    {"mesh", QC_TYPE_MESH, 0, "the surface its source faces count, unless there is a map"},
     {"features", QC_TYPE_FEATURES, QC_PORT_OPTIONAL,
      "edges of that surface which quad edges on them stay on"},
     {"map", QC_TYPE_CORNER_MAP, QC_PORT_OPTIONAL,
-     "tells its hard features, which are kept as well"},
+     "which the quads are cut from: tells the surface and hard features, which are kept as well"},
     {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL,
      "tells whether edge lengths depend on the direction: then quads keep their proportions"},
 };

@@ -14,7 +14,7 @@ typedef struct params {
 static const char *const solvers[] = {QC_SOLVER_ID, NULL};
 
 static const char *const lattices[] = {"quads", "integer", "even", NULL};
-static const char *const quantize[] = {"never", "needed", "always", NULL};
+static const char *const quantize[] = {"never", "needed", "always", "imprint", NULL};
 static const char *const starts[] = {"direct", "greedy", NULL};
 
 static const qc_port in[] = {

@@ -96,7 +96,8 @@ enum {
     QC_QUANTIZE_NEVER = 0,
     QC_QUANTIZE_WHERE_NEEDED =
         1, /* where rounding parts no cones and features, or winds many wrong */
-    QC_QUANTIZE_ALWAYS = 2
+    QC_QUANTIZE_ALWAYS = 2,
+    QC_QUANTIZE_IMPRINT = 3 /* always, and the map comes on a refined mesh, where it is injective */
 };
 typedef struct qc_round_options {
     uint32_t struct_size;

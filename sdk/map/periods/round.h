@@ -6,6 +6,7 @@
 
 #include "sdk/map/periods/period_matrix.h"
 #include "sdk/map/periods/separation.h"
+#include "sdk/map/quantize/exact_map.h"
 
 static const double qc__round_slack = 1e-9; /* deviations nearer than that are equal */
 /* Deviation of the number of quads which is good enough. */
@@ -35,6 +36,8 @@ typedef struct qc__rounding {
     double best_scale, best_miss, harmonic, harmonic_direct;
     int64_t moves, evaluations;
     bool coarse;             /* this trial only tells the number of quads */
+    bool quantized;          /* the best map is nearly that of quantization ... */
+    qc__imprint imprint;     /* ... and, when it was wanted, that on a refined mesh */
     int32_t collisions;      /* pairs which could not be kept apart in the last trial ... */
     int32_t best_collisions; /* ... and in the best map                                           */
     int32_t wrong, best_wrong; /* cones which wind wrong */
@@ -60,6 +63,10 @@ qc_status qc__round_extend(qc__rounding *r, double scale, double wanted,
 /* The same by quantization (docs/theory/quantization.md), which replaces the best map. *done: false
  * where the aligned map is not positive, so that nothing was changed. */
 qc_status qc__round_quantized(qc__rounding *r, bool *done);
+/* f (3 n_faces): the smooth map, which gives way to a feasible one with the same integers where it
+ * folds over. mesh: that of r or a refinement of it. */
+qc_status qc__round_blend(const qc__rounding *r, const qc_mesh *mesh, const qc_complex *smooth,
+                          const qc_complex *feasible, qc_complex *f);
 /* The best map whose number of quads meets what is asked for. */
 qc_status qc__round_meet(qc__rounding *r);
 /* Rotations across edges and features in the charts of the map (n_edges each); axis is left alone

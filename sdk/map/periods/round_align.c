@@ -83,7 +83,7 @@ static qc_status unfold(qc__rounding *r) {
  * there and solved again. Of all maps the one with the fewest wrong cones, then folded faces, is
  * kept. */
 qc_status qc__round_unfold(qc__rounding *r) {
-    if (r->seams->n_levels == 0) return QC_OK;
+    if (r->seams->n_levels == 0 || r->quantized) return QC_OK;
     const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
     const int32_t *index4 = r->seamless->matching->index4;
     int32_t folded = count_folded(r, r->best), wrong = r->best_wrong, left = folded;

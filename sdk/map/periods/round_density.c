@@ -67,7 +67,7 @@ static qc_status meet_refined(qc__rounding *r, double refine) {
  * sqrt(2), up to 8 times as many. */
 qc_status qc__round_meet(qc__rounding *r) {
     const double asked = r->options.refine;
-    const bool always = r->options.quantize == QC_QUANTIZE_ALWAYS && !r->options.trial;
+    const bool always = r->options.quantize >= QC_QUANTIZE_ALWAYS && !r->options.trial;
     bool quantized = false;
     qc_status status = always ? qc__round_quantized(r, &quantized) : QC_OK;
     if (status != QC_OK || quantized) return status;

@@ -6,7 +6,7 @@
 
 #include "sdk/map/periods/round.h"
 #include "sdk/map/periods/snap.h"
-#include "sdk/map/quantize/exact_map.h"
+#include "sdk/map/periods/wrong_cones.h"
 
 static const double read_tolerance = 1e-3; /* of the integers read from the values */
 static const double noteworthy = 0.1;      /* more quads than asked for */
@@ -17,9 +17,10 @@ typedef struct quantizing {
     int64_t *uv;    /* 6 n_faces */
     double *values; /* 6 n_faces */
     int8_t *rotation, *axis;
-    uint8_t *point;  /* n_vertices */
-    uint8_t *placed; /* n_faces */
-    int32_t *queue;  /* n_faces */
+    uint8_t *point;       /* n_vertices */
+    uint8_t *placed;      /* n_faces */
+    int32_t *queue;       /* n_faces */
+    qc_complex *feasible; /* 3 n_faces: the values, continuous off the cut */
 } quantizing;
 
 static qc_status make_exact(quantizing *q) {
@@ -74,8 +75,8 @@ static void join_charts(quantizing *q, qc_complex *f) {
 /* r->rounded from the values. */
 static qc_status read_integers(quantizing *q) {
     qc__rounding *r = q->r;
-    join_charts(q, r->trial);
-    const qc_status status = qc__seams_read(r->ctx, r->seams, r->trial, r->rounded);
+    join_charts(q, q->feasible);
+    const qc_status status = qc__seams_read(r->ctx, r->seams, q->feasible, r->rounded);
     for (int32_t j = 0; j < r->seams->n_free && status == QC_OK; j++) {
         const double integer = rint(r->rounded[j]), off = fabs(r->rounded[j] - integer);
         if (off > read_tolerance)
@@ -93,6 +94,51 @@ static void warn_density(const qc__rounding *r, double wanted, double made) {
                 made);
 }
 
+static qc_status blend_best(quantizing *q) {
+    qc__rounding *r = q->r;
+    const qc_status status = qc__round_blend(r, r->mesh, r->best, q->feasible, r->trial);
+    if (status != QC_OK) return status;
+    const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
+    memcpy(r->best, r->trial, sizeof *r->best * (size_t)n_corners);
+    r->best_wrong = qc__wrong_cones(r->mesh, r->seamless->matching->index4, r->best);
+    for (int64_t c = 0; c < n_corners; c++)
+        r->trial[c] = qc__pair(qc__complex(r->best[c]) - r->best_scale * qc__complex(r->f[c]));
+    r->harmonic = qc__round_energy(r, r->trial);
+    return QC_OK;
+}
+
+/* On the refined mesh the harmonic map is what it is on the faces of the old one, and the feasible
+ * one is that of the coarse complex, in the charts which were joined. */
+static qc_status blend_imprint(quantizing *q) {
+    const qc__rounding *r = q->r;
+    const qc__imprint *p = &r->imprint;
+    const int64_t n = 3 * (int64_t)p->mesh->n_faces;
+    qc_complex *smooth = QC__NEW(r->ctx, qc_complex, n);
+    qc_complex *feasible = QC__NEW(r->ctx, qc_complex, n);
+    qc_complex *f = QC__NEW(r->ctx, qc_complex, n);
+    qc_status status = smooth && feasible && f ? QC_OK : QC_ERR_NOMEM;
+    for (int64_t c = 0; c < n && status == QC_OK; c++) {
+        const int64_t first = 3 * (int64_t)p->parent[c / 3];
+        const qc_complex *old = r->best + first, shifted = q->feasible[first];
+        smooth[c] = (qc_complex){0, 0};
+        for (int k = 0; k < 3; k++) {
+            smooth[c].re += p->weight[3 * c + k] * old[k].re;
+            smooth[c].im += p->weight[3 * c + k] * old[k].im;
+        }
+        feasible[c] = (qc_complex){p->uv[2 * c] + shifted.re - q->values[2 * first],
+                                   p->uv[2 * c + 1] + shifted.im - q->values[2 * first + 1]};
+    }
+    if (status == QC_OK) status = qc__round_blend(r, p->mesh, smooth, feasible, f);
+    for (int64_t c = 0; c < n && status == QC_OK; c++) {
+        p->uv[2 * c] = f[c].re;
+        p->uv[2 * c + 1] = f[c].im;
+    }
+    qc__free(smooth);
+    qc__free(feasible);
+    qc__free(f);
+    return status;
+}
+
 static qc_status quantize(quantizing *q, bool *done) {
     qc__rounding *r = q->r;
     const double sized = r->options.refine * r->seamless->sizing->target_quads;
@@ -103,8 +149,11 @@ static qc_status quantize(quantizing *q, bool *done) {
     qc__round_charts(r, q->rotation, q->axis);
     const int8_t *axis = r->seamless->matching->axis ? q->axis : NULL;
     const qc__exact_map map = {r->mesh, q->uv, q->bits, q->rotation, axis, q->point};
+    const bool imprint = r->options.quantize == QC_QUANTIZE_IMPRINT;
     double made = 0, quads;
-    if (status == QC_OK) status = qc__quantize(r->ctx, &map, scale, sized, q->values, &made);
+    if (status == QC_OK)
+        status = qc__quantize(r->ctx, &map, scale, sized, q->values, &made,
+                              imprint ? &r->imprint : NULL);
     if (status == QC_ERR_FAILED) {
         qc__log(r->ctx, QC_LOG_INFO, "no quantization: %s", qc_ctx_error(r->ctx)->text);
         qc__clear_error(r->ctx);
@@ -115,9 +164,11 @@ static qc_status quantize(quantizing *q, bool *done) {
     r->coarse = false;
     r->collisions = 0;
     r->best_scale = 0;
-    *done = true;
+    *done = r->quantized = true;
     warn_density(r, sized, made);
-    return qc__round_extend(r, sqrt(made / area), sized, NULL, &quads);
+    status = qc__round_extend(r, sqrt(made / area), sized, NULL, &quads);
+    if (status != QC_OK) return status;
+    return r->imprint.mesh ? blend_imprint(q) : blend_best(q);
 }
 
 qc_status qc__round_quantized(qc__rounding *r, bool *done) {
@@ -132,10 +183,13 @@ qc_status qc__round_quantized(qc__rounding *r, bool *done) {
                     .axis = QC__NEW(r->ctx, int8_t, r->mesh->n_edges),
                     .point = QC__NEW(r->ctx, uint8_t, r->mesh->n_vertices),
                     .placed = QC__NEW(r->ctx, uint8_t, n_faces),
-                    .queue = QC__NEW(r->ctx, int32_t, n_faces)};
-    const bool room = q.uv && q.values && q.rotation && q.axis && q.point && q.placed && q.queue;
+                    .queue = QC__NEW(r->ctx, int32_t, n_faces),
+                    .feasible = QC__NEW(r->ctx, qc_complex, 3 * n_faces)};
+    const bool room =
+        q.uv && q.values && q.rotation && q.axis && q.point && q.placed && q.queue && q.feasible;
     const qc_status status = room ? quantize(&q, done) : QC_ERR_NOMEM;
-    void *const blocks[] = {q.uv, q.values, q.rotation, q.axis, q.point, q.placed, q.queue};
+    void *const blocks[] = {q.uv,    q.values, q.rotation, q.axis,
+                            q.point, q.placed, q.queue,    q.feasible};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

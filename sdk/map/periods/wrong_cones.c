@@ -2,6 +2,8 @@
 #include "sdk/map/periods/wrong_cones.h"
 #include <math.h>
 
+static const double quarter = 1.57079632679489661923;
+
 static double image_angle(const qc_mesh *mesh, const qc_complex *f, int32_t v) {
     const int32_t start = mesh->vertex_corner[v];
     double angle = 0;
@@ -20,11 +22,14 @@ static bool is_folded(const qc_complex *p) {
            0;
 }
 
+bool qc__winds_wrong(const qc_mesh *mesh, int32_t index4, const qc_complex *f, int32_t v) {
+    return lround(image_angle(mesh, f, v) / quarter) != 4 - index4;
+}
+
 int32_t qc__wrong_cones(const qc_mesh *mesh, const int32_t *index4, const qc_complex *f) {
-    const double quarter = 1.57079632679489661923;
     int32_t wrong = 0;
     for (int32_t v = 0; v < mesh->n_vertices; v++)
-        if (index4[v] != 0) wrong += lround(image_angle(mesh, f, v) / quarter) != 4 - index4[v];
+        if (index4[v] != 0) wrong += qc__winds_wrong(mesh, index4[v], f, v);
     for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
         const int32_t v = mesh->face_vertex[c];
         if (index4[v] == 0 && is_folded(f + c / 3 * 3))

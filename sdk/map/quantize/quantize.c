@@ -1,6 +1,6 @@
 /* Quantization (docs/theory/quantization.md): integers for which an injective map exists, and its
  * values at the vertices of the mesh. */
-#include "sdk/map/quantize/values.h"
+#include "sdk/map/quantize/imprint.h"
 
 /* Coarse complex and its integer vectors. */
 static qc_status find_integers(qc_ctx *ctx, const qc__exact_map *map, double scale, double quads,
@@ -18,11 +18,12 @@ static qc_status find_integers(qc_ctx *ctx, const qc__exact_map *map, double sca
 }
 
 qc_status qc__quantize(qc_ctx *ctx, const qc__exact_map *map, double scale, double quads,
-                       double *uv, double *made) {
+                       double *uv, double *made, qc__imprint *imprint) {
     qc__coarse_map *coarse = NULL;
     qc__point *x = NULL;
-    const qc_status status = find_integers(ctx, map, scale, quads, &coarse, &x, made);
+    qc_status status = find_integers(ctx, map, scale, quads, &coarse, &x, made);
     if (status == QC_OK) qc__quantized_values(map, coarse, x, uv);
+    if (status == QC_OK && imprint) status = qc__imprint_create(ctx, map, coarse, x, imprint);
     qc__coarse_map_free(coarse);
     qc__free(x);
     return status;

@@ -159,6 +159,38 @@ static void complexes_of_random_maps(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* The refined map is positive everywhere and has the quads which were promised. */
+static void assert_imprint(qc_ctx *ctx, const exact_case *e, qc__imprint *p, double made) {
+    const qc_mesh *mesh = e->map.mesh;
+    qc_corner_map *map = NULL;
+    qc_grid_map *grid = NULL;
+    qc_polygon_mesh *quads = NULL;
+    qc_polygon_topology t;
+    assert_int_equal(p->mesh->euler, mesh->euler);
+    assert_int_equal(p->mesh->n_boundary_loops, mesh->n_boundary_loops);
+    assert_true(fabs(p->mesh->area - mesh->area) < 1e-9 * mesh->area);
+    maps_ok(ctx, qc_corner_map_create(ctx, p->mesh, p->uv, 0, NULL, &map));
+    maps_ok(ctx, qc_corner_map_set_rotation(ctx, map, p->rotation));
+    if (p->axis) maps_ok(ctx, qc_corner_map_set_axis(ctx, map, p->axis));
+    maps_ok(ctx, qc_grid_map_create(ctx, map, 1e-6, &grid));
+    assert_int_equal(grid->n_flipped + grid->n_degenerate, 0);
+    assert_true(fabs(0.5 * doubled_area(grid) - made) < 1e-6 * made);
+    if (qc_map_extract(ctx, grid, &quads) == QC_OK) {
+        maps_ok(ctx, qc_polygon_mesh_topology(ctx, quads, &t));
+        assert_int_equal(t.non_quads + t.non_manifold_edges + t.non_manifold_vertices, 0);
+        assert_int_equal(t.boundary_loops, mesh->n_boundary_loops);
+        if (mesh->n_boundary_loops == 0) assert_int_equal(t.euler, mesh->euler);
+        if (mesh->n_boundary_loops == 0) assert_int_equal(quads->n_faces, lround(made));
+    } else { /* so few quads that they meet themselves, as one around a torus does */
+        assert_non_null(strstr(qc_ctx_error(ctx)->text, "the grid is too coarse"));
+        assert_true(made < 100);
+    }
+    qc_object_release(quads);
+    qc_object_release(grid);
+    qc_object_release(map);
+    qc__imprint_free(p);
+}
+
 /* Integers at any scale make the map integer-seamless, with the same rotations and features. */
 static void values_are_integer_seamless(void **state) {
     (void)state;
@@ -172,13 +204,15 @@ static void values_are_integer_seamless(void **state) {
             double *uv = malloc(sizeof *uv * 6 * (size_t)mesh->n_faces), made;
             qc_corner_map *map = NULL;
             qc_grid_map *grid = NULL;
-            maps_ok(ctx, qc__quantize(ctx, &e.map, scale, 0, uv, &made));
+            qc__imprint imprint;
+            maps_ok(ctx, qc__quantize(ctx, &e.map, scale, 0, uv, &made, &imprint));
             maps_ok(ctx, qc_corner_map_create(ctx, mesh, uv, 0, NULL, &map));
             maps_ok(ctx, qc_corner_map_set_rotation(ctx, map, e.map.rotation));
             if (e.map.axis) maps_ok(ctx, qc_corner_map_set_axis(ctx, map, e.map.axis));
             maps_ok(ctx, qc_grid_map_create(ctx, map, 1e-6, &grid));
             assert_memory_equal(grid->holonomy, e.grid->holonomy, (size_t)mesh->n_vertices);
             assert_true(made > 0);
+            assert_imprint(ctx, &e, &imprint, made);
             free(uv);
             qc_object_release(map);
             qc_object_release(grid);
