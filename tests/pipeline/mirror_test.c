@@ -60,11 +60,11 @@ typedef struct setting {
     qc_pipeline *pipeline;
 } setting;
 
-static void open_setting(setting *s, double crease_angle) {
+static void open_setting(setting *s, const qc_ctx_options *options, double crease_angle) {
     qc_default_pipeline_options o = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
     o.quads = 300;
     o.crease_angle = crease_angle;
-    assert_int_equal(qc_ctx_create(NULL, &s->ctx), QC_OK);
+    assert_int_equal(qc_ctx_create(options, &s->ctx), QC_OK);
     assert_int_equal(qc_registry_create(s->ctx, &s->registry), QC_OK);
     assert_int_equal(qc_registry_add(s->registry, &stage), QC_OK);
     assert_int_equal(qc_default_pipeline(s->ctx, s->registry, &o, &s->pipeline), QC_OK);
@@ -112,7 +112,7 @@ static void results_are_of_the_whole(void **state) {
         setting s;
         qc_remesh_result r = {0};
         qc_remesh_options o = QC_REMESH_OPTIONS_INIT;
-        open_setting(&s, soft == 2 ? -1 : 0);
+        open_setting(&s, NULL, soft == 2 ? -1 : 0);
         if (soft < 2)
             assert_int_equal(
                 qc_pipeline_set(s.pipeline, "features", "hard", soft ? "false" : "true"), QC_OK);
@@ -146,7 +146,7 @@ static void halves_which_do_not_fit_are_not_joined(void **state) {
     qc_remesh_result r = {0};
     qc_remesh_options o = QC_REMESH_OPTIONS_INIT;
     (void)state;
-    open_setting(&s, 0);
+    open_setting(&s, NULL, 0);
     assert_int_equal(qc_pipeline_insert(s.pipeline, qc_pipeline_count(s.pipeline) - 1, "shift",
                                         "org.test.shift"),
                      QC_OK);
@@ -166,10 +166,59 @@ static void halves_which_do_not_fit_are_not_joined(void **state) {
     close_setting(&s);
 }
 
+typedef struct counter {
+    int64_t made, fail_at, blocks; /* fail_at < 0: none fails */
+} counter;
+
+static void *counting_resize(void *user, void *p, size_t old_size, size_t new_size) {
+    counter *c = user;
+    (void)old_size;
+    if (new_size == 0) {
+        c->blocks -= p != NULL;
+        free(p);
+        return NULL;
+    }
+    if (c->made++ == c->fail_at) return NULL;
+    c->blocks += p == NULL;
+    return realloc(p, new_size);
+}
+
+/* A sample of all allocations, among them the last ones, which are those of the mirror image. */
+static void out_of_memory_anywhere_is_an_error(void **state) {
+    enum { SAMPLES = 30, LAST = 80 };
+    counter c = {0, -1, 0};
+    setting s;
+    qc_remesh_options o = QC_REMESH_OPTIONS_INIT;
+    qc_ctx_options options = QC_CTX_OPTIONS_INIT;
+    (void)state;
+    options.resize = counting_resize;
+    options.user = &c;
+    options.threads = 1; /* the allocator is not thread-safe */
+    open_setting(&s, &options, -1);
+    qc_polygon_mesh *input = coloured(s.ctx, "ellipsoid");
+    int64_t total = 0;
+    o.symmetry = "x";
+    for (int64_t i = -1; i < SAMPLES + LAST; i++) { /* -1: counts, nothing fails */
+        qc_remesh_result r = {0};
+        const int64_t before = c.blocks;
+        c.made = 0;
+        c.fail_at = i < 0 ? -1 : i < SAMPLES ? i * total / SAMPLES : total - 1 - (i - SAMPLES);
+        const qc_status status = qc_remesh(s.ctx, s.pipeline, input, &o, &r);
+        if (i < 0) total = c.made;
+        assert_int_equal(status, i < 0 ? QC_OK : QC_ERR_NOMEM);
+        qc_remesh_result_clear(&r);
+        assert_int_equal(c.blocks, before);
+    }
+    c.fail_at = -1;
+    qc_object_release(input);
+    close_setting(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(results_are_of_the_whole),
         cmocka_unit_test(halves_which_do_not_fit_are_not_joined),
+        cmocka_unit_test(out_of_memory_anywhere_is_an_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,7 +11,7 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     static const double position[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const int32_t face[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     static const uint8_t base[] = {1, 0, 1, 0};
-    qc_mesh *m = NULL, *part = NULL;
+    qc_mesh *m = NULL, *part = NULL, *half = NULL;
     qc_features *features = NULL;
     static const double ray[] = {0.1, 0.1, 5, 0, 0, -1, 0.3, 0.3, 5, 0, 0, -1};
     static const int32_t stroke[] = {0, 2};
@@ -37,6 +37,10 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     if (s == QC_OK) memcpy(p->position, position, sizeof position);
     if (s == QC_OK) s = qc_mesh_pick(ctx, m, features, NULL, NULL, 2, ray, pick);
     if (s == QC_OK) s = qc_ray_strokes(ctx, p, NULL, 1, stroke, ray, 0.05, &strokes);
+    qc_plane plane = {{0, 0, 1}, 0.2};
+    double deviation;
+    if (s == QC_OK) s = qc_mesh_half(ctx, m, &plane, &half);
+    if (s == QC_OK) s = qc_mesh_find_symmetry(ctx, m, -1, 1, NULL, &plane, &deviation);
     const qc_polygon_mesh *parts[] = {p, p};
     if (s == QC_OK) s = qc_polygon_mesh_merge(ctx, 2, parts, NULL, &both);
     if (s == QC_OK) s = qc_polygon_mesh_topology(ctx, both, &topology);
@@ -46,6 +50,7 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     qc_object_release(p);
     qc_object_release(features);
     qc_object_release(part);
+    qc_object_release(half);
     qc_object_release(m);
     return s;
 }
