@@ -6,7 +6,7 @@
 
 typedef struct params {
     bool enabled;
-    int64_t rounds, iterations;
+    int64_t rounds, iterations, relax;
 } params;
 
 static const qc_port in[] = {
@@ -20,6 +20,8 @@ static const qc_param table[] = {
     QC_PARAM_BOOL(params, enabled, true, "false: only writes the map on the exact grid"),
     QC_PARAM_INT(params, rounds, 20, 1, 1000, "", "outer rounds for each neighbourhood"),
     QC_PARAM_INT(params, iterations, 200, 1, 100000, "", "L-BFGS iterations in a round"),
+    QC_PARAM_INT(params, relax, 50, 0, 100000, "",
+                 "then steps which even out what was moved, at most; every face stays positive"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
@@ -33,6 +35,7 @@ static qc_status run(const qc_run *r, const void *raw) {
         qc_untangle_options options = QC_UNTANGLE_OPTIONS_INIT;
         options.max_rounds = (int32_t)p->rounds;
         options.max_iterations = (int32_t)p->iterations;
+        options.relax = (int32_t)p->relax;
         status = qc_map_untangle(r->ctx, map, &options, &result);
         if (status == QC_OK) status = qc_grid_map_create(r->ctx, result, 0, &after);
         if (status == QC_OK) {
@@ -62,7 +65,9 @@ const qc_stage qc_stage_untangle = {
     .doc = "Where faces are inverted or degenerate, the parameters in a neighbourhood move to the "
            "minimum of a regularised distortion energy which is finite for inverted faces; its "
            "regularisation falls until every face is positively oriented by an exact integer test. "
-           "Transitions and cones do not change. Neighbourhoods grow when they are too small.",
+           "Transitions and cones do not change. Neighbourhoods grow when they are too small. "
+           "Where that "
+           "succeeds, what was moved is evened out by steps which keep every face positive.",
     .cite = "Garanzha et al. 2021, Foldover-free maps in 50 lines of code",
     .in = in,
     .out = out,

@@ -169,9 +169,10 @@ typedef struct qc_untangle_options {
     uint32_t struct_size;
     int32_t max_rounds; /* outer rounds (epsilon)                                               */
     int32_t max_iterations; /* L-BFGS iterations a round */
+    int32_t relax; /* steps which even out what was moved, every face staying positive; 0 = none  */
 } qc_untangle_options;
 #define QC_UNTANGLE_OPTIONS_INIT                                                                   \
-    { sizeof(qc_untangle_options), 20, 200 }
+    { sizeof(qc_untangle_options), 20, 200, 50 }
 /* Moves the parameters, keeping all transitions, features and lattice points, until every face is
  * positively oriented by the exact test or the work reaches a bound in proportion to the mesh. *out
  * is the best map found, its remaining fold-overs in n_flipped / n_degenerate of a

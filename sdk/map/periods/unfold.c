@@ -59,7 +59,7 @@ static qc_status precondition(qc_ctx *ctx, void *user, double *p) {
 }
 
 static qc_status descend(unfolder *u, double eps) {
-    const qc__lbfgs_problem problem = {u->free->n, u, evaluate, precondition};
+    const qc__lbfgs_problem problem = {u->free->n, u, evaluate, precondition, NULL};
     u->eps = eps;
     return qc__lbfgs(u->ctx, &problem, ITERATIONS, same_energy, u->x, NULL, NULL);
 }

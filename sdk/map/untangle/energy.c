@@ -46,7 +46,9 @@ double qc__patch_energy(qc__patch *p, const double *x, double *gradient) {
         const int32_t t = p->face[i];
         qc_complex f[3], g[3];
         corners(p, x, t, f);
-        energy += qc__face_energy(p->hat + 3 * (int64_t)t, p->area[t], p->eps, 0, f, g);
+        const qc_complex *hat = p->hat + 3 * (int64_t)t;
+        energy += p->positive ? qc__face_barrier(hat, p->area[t], f, g)
+                              : qc__face_energy(hat, p->area[t], p->eps, 0, f, g);
         for (int32_t k = 0; k < 3; k++) {
             const int64_t c = 3 * (int64_t)t + k;
             const int32_t j = p->local[p->map->mesh->face_vertex[c]];
@@ -68,6 +70,23 @@ double qc__patch_min_det(const qc__patch *p, const double *x) {
         corners(p, x, t, f);
         const double d = qc__jacobian_det(p->hat + 3 * (int64_t)t, f);
         if (d < least) least = d;
+    }
+    return least;
+}
+
+double qc__patch_limit(const qc__patch *p, const double *x, const double *way) {
+    double least = INFINITY;
+    for (int32_t i = 0; i < p->n_faces; i++) {
+        const int32_t t = p->face[i];
+        qc_complex f[3], d[3];
+        corners(p, x, t, f);
+        for (int32_t k = 0; k < 3; k++) {
+            const int64_t c = 3 * (int64_t)t + k, j = p->local[p->map->mesh->face_vertex[c]];
+            const qc_complex own = {j < 0 ? 0 : way[2 * j], j < 0 ? 0 : way[2 * j + 1]};
+            d[k] = qc_quarter_turn(own, p->map->turn[c]);
+        }
+        const double limit = qc__face_limit(f, d);
+        if (limit < least) least = limit;
     }
     return least;
 }

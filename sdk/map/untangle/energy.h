@@ -18,7 +18,8 @@ typedef struct qc__patch {
     const int32_t *face; /* faces with an active vertex                                           */
     const int32_t *local; /* mesh vertex -> j, -1 */
     double eps;
-    int64_t work; /* faces evaluated so far */
+    bool positive; /* all faces are and stay: their energy is qc__face_barrier */
+    int64_t work;  /* faces evaluated so far */
     int64_t work_limit;
 } qc__patch;
 
@@ -33,6 +34,11 @@ double qc__patch_energy(qc__patch *patch, const double *x, double *gradient);
  * place. */
 qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *patch, const qc_untangle_options *options,
                              double *x);
+/* From a patch whose faces are all positive: lowers the symmetric Dirichlet energy for at most
+ * `steps` steps, each ending short of where a face collapses; x in place. */
+qc_status qc__patch_relax(qc_ctx *ctx, qc__patch *patch, int32_t steps, double *x);
+/* Length of the step along p, in units of p, within which the faces stay positive. */
+double qc__patch_limit(const qc__patch *patch, const double *x, const double *p);
 /* Smallest det J over the faces of the patch. */
 double qc__patch_min_det(const qc__patch *patch, const double *x);
 

@@ -56,6 +56,14 @@ double qc__jacobian_det(const qc_complex hat[3], const qc_complex f[3]) {
     return det(du, dv);
 }
 
+/* From the gradients by du and dv to those by the corners. */
+static void by_corners(const qc_complex hat[3], qc_complex gu, qc_complex gv,
+                       qc_complex gradient[3]) {
+    for (int32_t k = 0; k < 3; k++)
+        gradient[k] = (qc_complex){gu.re * hat[k].re + gu.im * hat[k].im,
+                                   gv.re * hat[k].re + gv.im * hat[k].im};
+}
+
 double qc__face_energy(const qc_complex hat[3], double A, double eps, double pull,
                        const qc_complex f[3], qc_complex gradient[3]) {
     qc_complex du, dv;
@@ -71,8 +79,41 @@ double qc__face_energy(const qc_complex hat[3], double A, double eps, double pul
                            by_trace * du.im - by_det * dv.re};
     const qc_complex gv = {by_trace * dv.re - by_det * du.im,
                            by_trace * dv.im + by_det * du.re - by_one};
-    for (int32_t k = 0; k < 3; k++)
-        gradient[k] = (qc_complex){gu.re * hat[k].re + gu.im * hat[k].im,
-                                   gv.re * hat[k].re + gv.im * hat[k].im};
+    by_corners(hat, gu, gv, gradient);
     return A * (top / chi + pull * (0.5 * trace + 1 - du.re - dv.im));
+}
+
+double qc__face_barrier(const qc_complex hat[3], double A, const qc_complex f[3],
+                        qc_complex gradient[3]) {
+    qc_complex du, dv;
+    jacobian(hat, f, &du, &dv);
+    const double d = det(du, dv);
+    if (!(d > 0)) {
+        for (int32_t k = 0; k < 3; k++) gradient[k] = (qc_complex){0, 0};
+        return INFINITY;
+    }
+    const double trace = du.re * du.re + du.im * du.im + dv.re * dv.re + dv.im * dv.im;
+    const double by_trace = A * 2 * (1 + 1 / (d * d)), by_det = -A * 2 * trace / (d * d * d);
+    const qc_complex gu = {by_trace * du.re + by_det * dv.im, by_trace * du.im - by_det * dv.re};
+    const qc_complex gv = {by_trace * dv.re - by_det * du.im, by_trace * dv.im + by_det * du.re};
+    by_corners(hat, gu, gv, gradient);
+    return A * trace * (1 + 1 / (d * d));
+}
+
+static double cross(qc_complex a, qc_complex b) {
+    return a.re * b.im - a.im * b.re;
+}
+
+double qc__face_limit(const qc_complex f[3], const qc_complex p[3]) {
+    qc_complex e[2], g[2];
+    for (int32_t k = 0; k < 2; k++) {
+        e[k] = (qc_complex){f[k + 1].re - f[0].re, f[k + 1].im - f[0].im};
+        g[k] = (qc_complex){p[k + 1].re - p[0].re, p[k + 1].im - p[0].im};
+    }
+    const double c = cross(e[0], e[1]), b = cross(e[0], g[1]) + cross(g[0], e[1]);
+    const double a = cross(g[0], g[1]), root = b * b - 4 * a * c;
+    if (root < 0) return INFINITY;
+    const double q = -0.5 * (b + copysign(sqrt(root), b)); /* the roots are q / a and c / q */
+    const double first = q / a, second = c / q;
+    return fmin(first > 0 ? first : INFINITY, second > 0 ? second : INFINITY);
 }

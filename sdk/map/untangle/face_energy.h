@@ -19,4 +19,11 @@ double qc__jacobian_det(const qc_complex hat[3], const qc_complex f[3]);
 double qc__face_energy(const qc_complex hat[3], double area, double eps, double pull,
                        const qc_complex f[3], qc_complex gradient[3]);
 
+/* The symmetric Dirichlet energy A (|J|^2 + |J^-1|^2) of a positive face
+ * (docs/theory/untangling.md, U.8), infinite with gradient 0 for others. */
+double qc__face_barrier(const qc_complex hat[3], double area, const qc_complex f[3],
+                        qc_complex gradient[3]);
+/* The least t > 0 at which f + t p is no longer positive, INFINITY = none; f is. */
+double qc__face_limit(const qc_complex f[3], const qc_complex p[3]);
+
 #endif

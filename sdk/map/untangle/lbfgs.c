@@ -81,7 +81,8 @@ qc_status qc__lbfgs(qc_ctx *ctx, const qc__lbfgs_problem *problem, int32_t max_i
         if (status != QC_OK) break;
         const double slope = dot(n, g, p);
         if (!(slope < 0)) break;
-        double t = 1.0, e_new = INFINITY;
+        double t = problem->limit ? fmin(1.0, problem->limit(problem->user, x, p)) : 1.0;
+        double e_new = INFINITY;
         int32_t tries = 0;
         for (; tries < BACKTRACKS; tries++, t *= 0.5) {
             for (int64_t i = 0; i < n; i++) x_new[i] = x[i] + t * p[i];

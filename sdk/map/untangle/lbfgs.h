@@ -11,6 +11,8 @@ typedef struct qc__lbfgs_problem {
     double (*evaluate)(void *user, const double *x, double *gradient);
     /* p := H0 p, a symmetric positive definite guess of the inverse Hessian; NULL = identity. */
     qc_status (*precondition)(qc_ctx *ctx, void *user, double *p);
+    /* Steps along p from x are at most this long in units of p; NULL = any length. */
+    double (*limit)(void *user, const double *x, const double *p);
 } qc__lbfgs_problem;
 
 /* Minimises from x in place, at most max_iterations steps; stops when a step lowers the energy by

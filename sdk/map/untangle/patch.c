@@ -6,7 +6,8 @@
 #include <string.h>
 
 static const double eps_floor = 1e-3, eps_slope = 0.04; /* eps^2 = floor^2 + slope min(0, det)^2 */
-static const double clean_det = 0.01; /* one more round after the patch is clean  */
+static const double clean_det = 0.01;  /* one more round after the patch is clean  */
+static const double limit_share = 0.9; /* of the way to where a face collapses */
 
 enum {
     PATIENCE = 4
@@ -152,12 +153,19 @@ static qc_status factor_patch(qc_ctx *ctx, preconditioner *pre) {
     return status;
 }
 
+static void release(preconditioner *pre) {
+    qc_factor_free(pre->factor);
+    qc_symbolic_free(pre->symbolic);
+    qc__free(pre->unknown);
+    qc__free(pre->packed);
+}
+
 qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *p, const qc_untangle_options *options,
                              double *x) {
     preconditioner pre = {.patch = p};
     qc_status status = factor_patch(ctx, &pre);
     const qc__lbfgs_problem problem = {2 * (int64_t)p->n_vertices, &pre, patch_evaluate,
-                                       patch_precondition};
+                                       patch_precondition, NULL};
     double best = -INFINITY;
     int32_t waiting = 0;
     bool polished = false;
@@ -171,9 +179,23 @@ qc_status qc__patch_minimise(qc_ctx *ctx, qc__patch *p, const qc_untangle_option
         p->eps = sqrt(eps_floor * eps_floor + eps_slope * below * below);
         status = qc__lbfgs(ctx, &problem, options->max_iterations, 1e-7, x, NULL, NULL);
     }
-    qc_factor_free(pre.factor);
-    qc_symbolic_free(pre.symbolic);
-    qc__free(pre.unknown);
-    qc__free(pre.packed);
+    release(&pre);
+    return status;
+}
+
+static double patch_limit(void *user, const double *x, const double *way) {
+    const preconditioner *p = user;
+    return limit_share * qc__patch_limit(p->patch, x, way);
+}
+
+qc_status qc__patch_relax(qc_ctx *ctx, qc__patch *p, int32_t steps, double *x) {
+    preconditioner pre = {.patch = p};
+    qc_status status = factor_patch(ctx, &pre);
+    const qc__lbfgs_problem problem = {2 * (int64_t)p->n_vertices, &pre, patch_evaluate,
+                                       patch_precondition, patch_limit};
+    p->positive = true;
+    if (status == QC_OK) status = qc__lbfgs(ctx, &problem, steps, 1e-5, x, NULL, NULL);
+    p->positive = false;
+    release(&pre);
     return status;
 }

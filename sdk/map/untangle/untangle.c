@@ -12,10 +12,12 @@
 
 static const double good_det = 1e-4; /* faces below it count as folded           */
 static const double longest_step = 0.125, shortest_step = 0.125 / 8; /* of the continuation */
+static const double moved_far = 1e-6; /* parameter units: less is rounding on the way */
 /* Evaluations of the whole map, at most, on the way from the relaxed map and at its end. */
 static const int64_t walk_effort = 8000, end_effort = 8000;
 enum {
-    GROWTHS = 5 /* of the neighbourhood: 3, 6, 12, 24, 48 rings */
+    GROWTHS = 5, /* of the neighbourhood: 3, 6, 12, 24, 48 rings */
+    RELAXED_RINGS = 4
 };
 /* Of stars laid out anew, by growth: crowded cones want small ones, stretched places large ones. */
 static const double star_scale[GROWTHS] = {0.3, 0.6, 0.1, 1.0, 0.03};
@@ -161,8 +163,16 @@ static int32_t count_bad(const untangler *u) {
     return bad;
 }
 
-/* Lowers the energy over the vertices of the patch which are not frozen. */
-static qc_status minimise(untangler *u) {
+static qc_status untangle_step(untangler *u, qc__patch *patch) {
+    return qc__patch_minimise(u->ctx, patch, &u->options, u->x);
+}
+
+static qc_status relax_step(untangler *u, qc__patch *patch) {
+    return qc__patch_relax(u->ctx, patch, u->options.relax, u->x);
+}
+
+/* Lowers an energy over the vertices of the patch which are not frozen. */
+static qc_status descend(untangler *u, qc_status (*step)(untangler *, qc__patch *)) {
     int32_t n = 0;
     for (int32_t j = 0; j < u->n_patch; j++) {
         const int32_t v = u->vertex[j];
@@ -184,7 +194,7 @@ static qc_status minimise(untangler *u) {
                        .local = u->local,
                        .work = u->work,
                        .work_limit = u->work_limit};
-    const qc_status status = n > 0 ? qc__patch_minimise(u->ctx, &patch, &u->options, u->x) : QC_OK;
+    const qc_status status = n > 0 ? step(u, &patch) : QC_OK;
     u->work = patch.work;
     for (int32_t j = 0; j < n; j++) {
         const int32_t v = u->active[j];
@@ -202,11 +212,11 @@ static qc_status untangle_patch(untangler *u) {
     for (int32_t j = 0; j < u->n_patch; j++) u->saved[j] = u->map->value[u->vertex[j]];
     qc_status status = QC_OK;
     if (lay_out_wrong_cones(u)) {
-        status = minimise(u);
+        status = descend(u, untangle_step);
         for (int32_t i = 0; i < 3 * u->n_patch_faces; i++)
             u->frozen[u->mesh->face_vertex[3 * (int64_t)u->face[i / 3] + i % 3]] = 0;
     }
-    if (status == QC_OK) status = minimise(u);
+    if (status == QC_OK) status = descend(u, untangle_step);
     const int32_t after = status == QC_OK ? count_bad(u) : before;
     if (after >= before && after > 0)
         for (int32_t j = 0; j < u->n_patch; j++) u->map->value[u->vertex[j]] = u->saved[j];
@@ -224,6 +234,36 @@ static qc_status untangle_rings(untangler *u, int32_t rings, int32_t *bad) {
         if (u->distance[v] < 0 || qc__pinned(u->map, v)) continue;
         collect_patch(u, v);
         const qc_status status = untangle_patch(u);
+        if (status != QC_OK) return status;
+    }
+    return QC_OK;
+}
+
+/* --- evening out ------------------------------------------------------------------------------ */
+
+/* Vertices which moved from the rounded map have distance 0, rings about them more, others -1. */
+static void mark_moved(untangler *u) {
+    const qc_mesh *mesh = u->mesh;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        const qc_complex a = u->map->value[v], b = u->target->value[v];
+        u->distance[v] = hypot(a.re - b.re, a.im - b.im) > moved_far ? 0 : -1;
+    }
+    for (int32_t i = 0; i < RELAXED_RINGS; i++)
+        for (int32_t h = 0; h < 3 * mesh->n_faces; h++) {
+            const int32_t v = qc_halfedge_start(mesh, h), w = qc_halfedge_end(mesh, h);
+            if (u->distance[v] == i && u->distance[w] < 0) u->distance[w] = i + 1;
+            if (u->distance[w] == i && u->distance[v] < 0) u->distance[v] = i + 1;
+        }
+}
+
+/* Lowers the symmetric Dirichlet energy over what untangling moved: no face collapses on the way,
+ * so none is turned over and no cone changes its winding. */
+static qc_status relax_moved(untangler *u) {
+    mark_moved(u);
+    for (int32_t v = 0; v < u->mesh->n_vertices; v++) {
+        if (u->distance[v] < 0 || qc__pinned(u->map, v)) continue;
+        collect_patch(u, v);
+        const qc_status status = descend(u, relax_step);
         if (status != QC_OK) return status;
     }
     return QC_OK;
@@ -467,6 +507,10 @@ static qc_status continue_from(untangler *u, const qc_corner_map *map, const qc_
     return status;
 }
 
+static bool is_mended(untangler *u) {
+    return mark_neighbourhood(u, 0) == 0;
+}
+
 qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map, const qc_untangle_options *options,
                           qc_corner_map **out) {
     untangler u = {.ctx = ctx, .mesh = map->mesh};
@@ -480,10 +524,13 @@ qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map, const qc_untang
     status = prepare(&u, map, before);
     int32_t bad = 0;
     if (status == QC_OK) bad = mark_neighbourhood(&u, 0);
+    const int32_t bad_before = bad;
     u.work_limit = walk_effort * map->mesh->n_faces;
     if (status == QC_OK && bad > 0 && map->relaxed) status = continue_from(&u, map, before);
     u.work_limit = u.work + end_effort * map->mesh->n_faces;
     if (status == QC_OK && bad > 0) status = untangle_growing(&u, GROWTHS, 0.8, 1.0, &bad);
+    if (status == QC_OK && bad_before > 0 && u.options.relax > 0 && is_mended(&u))
+        status = relax_moved(&u);
     if (status == QC_OK) status = exact_result(&u, map, before, out);
     qc_object_release(before);
     release(&u);

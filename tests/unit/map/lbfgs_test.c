@@ -54,7 +54,7 @@ static void a_convex_quadratic_is_minimised(void **state) {
     int32_t steps[2];
     for (int with = 0; with < 2; with++) {
         quadratic q = ill_conditioned();
-        const qc__lbfgs_problem problem = {N, &q, quadratic_value, with ? by_diagonal : NULL};
+        const qc__lbfgs_problem problem = {N, &q, quadratic_value, with ? by_diagonal : NULL, NULL};
         double x[N] = {0}, energy = -1;
         must(ctx, qc__lbfgs(ctx, &problem, 2000, 1e-16, x, &energy, &steps[with]));
         for (int i = 0; i < N; i++) assert_true(fabs(x[i] - i) < 1e-6);
@@ -75,7 +75,7 @@ static double rosenbrock(void *user, const double *x, double *gradient) {
 static void rosenbrocks_valley_is_followed(void **state) {
     (void)state;
     qc_ctx *ctx = context(1);
-    const qc__lbfgs_problem problem = {2, NULL, rosenbrock, NULL};
+    const qc__lbfgs_problem problem = {2, NULL, rosenbrock, NULL, NULL};
     const double start[][2] = {{-1.2, 1}, {5, -7}, {0, 0}, {-40, 30}};
     for (size_t i = 0; i < sizeof start / sizeof *start; i++) {
         double x[2] = {start[i][0], start[i][1]}, energy = -1;
@@ -91,7 +91,7 @@ static void rosenbrocks_valley_is_followed(void **state) {
 static void energy_falls_with_every_step(void **state) {
     (void)state;
     qc_ctx *ctx = context(1);
-    const qc__lbfgs_problem problem = {2, NULL, rosenbrock, NULL};
+    const qc__lbfgs_problem problem = {2, NULL, rosenbrock, NULL, NULL};
     double before = INFINITY;
     for (int32_t most = 0; most < 30; most++) {
         double x[2] = {-1.2, 1}, g[2], energy = -1;
@@ -108,7 +108,7 @@ static void energy_falls_with_every_step(void **state) {
 static void a_minimum_is_left_alone(void **state) {
     (void)state;
     qc_ctx *ctx = context(1);
-    const qc__lbfgs_problem problem = {2, NULL, rosenbrock, NULL};
+    const qc__lbfgs_problem problem = {2, NULL, rosenbrock, NULL, NULL};
     double x[2] = {1, 1}, energy = -1;
     must(ctx, qc__lbfgs(ctx, &problem, 10, 1e-7, x, &energy, NULL));
     assert_true(x[0] == 1 && x[1] == 1 && energy == 0);
@@ -119,7 +119,7 @@ static void an_error_of_the_preconditioner_is_passed_on(void **state) {
     (void)state;
     qc_ctx *ctx = context(1);
     quadratic q = ill_conditioned();
-    const qc__lbfgs_problem problem = {N, &q, quadratic_value, refuse};
+    const qc__lbfgs_problem problem = {N, &q, quadratic_value, refuse, NULL};
     double x[N] = {0}, energy = 5;
     assert_int_equal(qc__lbfgs(ctx, &problem, 10, 1e-7, x, &energy, NULL), QC_ERR_FAILED);
     assert_true(energy == 5);
