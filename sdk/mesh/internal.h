@@ -117,6 +117,9 @@ typedef struct qc__sides {
     int32_t *order; /* n: sides by edge */
     int32_t *group; /* n_groups + 1: start of each edge in `order` */
 } qc__sides;
+/* sides: zeros before; to be freed in any case. The arrays of the mesh have to be in range. */
+qc_status qc__sides_create(qc_ctx *ctx, const qc_polygon_mesh *mesh, qc__sides *sides);
+void qc__sides_free(qc__sides *sides);
 
 qc_status qc__polygon_duplicates(qc_ctx *ctx, const qc_polygon_mesh *mesh, int32_t *count,
                                  int32_t *first);

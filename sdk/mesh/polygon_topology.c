@@ -21,14 +21,14 @@ static qc_status check_arrays(qc_ctx *ctx, const qc_polygon_mesh *p) {
     return QC_OK;
 }
 
-static void sides_free(qc__sides *s) {
+void qc__sides_free(qc__sides *s) {
     qc__free(s->next);
     qc__free(s->face);
     qc__free(s->order);
     qc__free(s->group);
 }
 
-static qc_status sides_create(qc_ctx *ctx, const qc_polygon_mesh *p, qc__sides *s) {
+qc_status qc__sides_create(qc_ctx *ctx, const qc_polygon_mesh *p, qc__sides *s) {
     s->n = p->n_corners;
     s->next = QC__NEW(ctx, int32_t, s->n);
     s->face = QC__NEW(ctx, int32_t, s->n);
@@ -137,9 +137,9 @@ qc_status qc_polygon_mesh_topology(qc_ctx *ctx, const qc_polygon_mesh *mesh,
     result.first_bad_element = -1;
     qc__sides sides = {0};
     qc_status status = check_arrays(ctx, mesh);
-    if (status == QC_OK) status = sides_create(ctx, mesh, &sides);
+    if (status == QC_OK) status = qc__sides_create(ctx, mesh, &sides);
     if (status == QC_OK) status = check(ctx, mesh, &sides, &result);
     if (status == QC_OK) *out = result;
-    sides_free(&sides);
+    qc__sides_free(&sides);
     return status;
 }

@@ -10,32 +10,21 @@ static const double near_plane = 1e-7;
 
 /* --- the border ------------------------------------------------------------------------------- */
 
-/* The side which corner c of face f starts. */
-static void side(const qc_polygon_mesh *m, int32_t f, int32_t c, int32_t *low, int32_t *high) {
-    const int32_t next = c + 1 < m->face_offset[f + 1] ? c + 1 : m->face_offset[f];
-    const int32_t a = m->face_vertex[c], b = m->face_vertex[next];
-    *low = a < b ? a : b;
-    *high = a < b ? b : a;
-}
-
 /* Flags the vertices of the boundary on the plane; *arcs: how many more there are of them than of
  * edges between them, which is the number of arcs they form that are not closed. */
 static void flag_border(const qc_polygon_mesh *m, const qc_plane *plane, double tolerance,
-                        const int32_t *low, const int32_t *high, const int32_t *order, uint8_t *on,
-                        int32_t *arcs) {
+                        const qc__sides *sides, uint8_t *on, int32_t *arcs) {
     *arcs = 0;
     memset(on, 0, (size_t)m->n_vertices);
     for (int pass = 0; pass < 2; pass++)
-        for (int32_t i = 0, end; i < m->n_corners; i = end) {
-            const int32_t a = low[order[i]], b = high[order[i]];
-            for (end = i + 1; end < m->n_corners && low[order[end]] == a && high[order[end]] == b;)
-                end++;
-            if (end != i + 1) continue;
-            if (pass == 1 && on[a] && on[b]) --*arcs;
+        for (int32_t g = 0; g < sides->n_groups; g++) {
+            const int32_t c = sides->order[sides->group[g]];
+            const int32_t v[2] = {m->face_vertex[c], m->face_vertex[sides->next[c]]};
+            if (sides->group[g + 1] - sides->group[g] != 1) continue;
+            if (pass == 1 && on[v[0]] && on[v[1]]) --*arcs;
             for (int k = 0; k < 2 && pass == 0; k++) {
-                const int32_t v = k ? b : a;
-                const double d = qc__plane_distance(plane, m->position + 3 * (int64_t)v);
-                on[v] = fabs(d) <= tolerance;
+                const double d = qc__plane_distance(plane, m->position + 3 * (int64_t)v[k]);
+                on[v[k]] = fabs(d) <= tolerance;
             }
         }
     for (int32_t v = 0; v < m->n_vertices; v++) *arcs += on[v];
@@ -43,18 +32,10 @@ static void flag_border(const qc_polygon_mesh *m, const qc_plane *plane, double 
 
 static qc_status find_border(qc_ctx *ctx, const qc_polygon_mesh *m, const qc_plane *plane,
                              double tolerance, uint8_t *on, int32_t *arcs) {
-    int32_t *low = QC__NEW(ctx, int32_t, m->n_corners), *high = QC__NEW(ctx, int32_t, m->n_corners);
-    int32_t *order = QC__NEW(ctx, int32_t, m->n_corners);
-    qc_status status = low && high && order ? QC_OK : QC_ERR_NOMEM;
-    for (int32_t f = 0; status == QC_OK && f < m->n_faces; f++)
-        for (int32_t c = m->face_offset[f]; c < m->face_offset[f + 1]; c++)
-            side(m, f, c, &low[c], &high[c]);
-    if (status == QC_OK)
-        status = qc__sort_pairs(ctx, m->n_vertices, m->n_corners, low, high, order);
-    if (status == QC_OK) flag_border(m, plane, tolerance, low, high, order, on, arcs);
-    qc__free(low);
-    qc__free(high);
-    qc__free(order);
+    qc__sides sides = {0};
+    const qc_status status = qc__sides_create(ctx, m, &sides);
+    if (status == QC_OK) flag_border(m, plane, tolerance, &sides, on, arcs);
+    qc__sides_free(&sides);
     return status;
 }
 
