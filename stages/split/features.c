@@ -1,5 +1,5 @@
 /* Stage qc.split.features: splits edges between hard features, so that each side of one has faces
- * of its own. */
+ * of its own, and around spikes, so that the field can turn there. */
 #include <qc/field.h>
 #include <qc/stages.h>
 
@@ -29,7 +29,7 @@ static qc_status split(const qc_run *run, const void *params) {
 }
 
 static const qc_port inputs[] = {
-    {"features", QC_TYPE_FEATURES, 0, "feature edges; nothing is done where they are not hard"},
+    {"features", QC_TYPE_FEATURES, 0, "feature edges, hard or not"},
     {"sizing", QC_TYPE_SIZING, QC_PORT_OPTIONAL, "target edge length of the quads"},
 };
 static const qc_port outputs[] = {
@@ -41,12 +41,15 @@ static const qc_port outputs[] = {
 const qc_stage qc_stage_split_features = {
     QC_STAGE_SIZES,
     "qc.split.features",
-    "1.0",
-    "Split mesh edges between hard features",
-    "Bisects every edge which joins two vertices on features and is none itself, and the edges of "
-    "faces with three feature edges, until there is none. A face between two features could follow "
-    "one of them only, and a piecewise linear map which has both on isolines may have to fold over "
-    "there. The surface stays the same; nothing is copied when there is nothing to split.",
+    "1.1",
+    "Split mesh edges between hard features and around spikes",
+    "Bisects every edge which joins two vertices on hard features and is none itself, and the "
+    "edges "
+    "of faces with three feature edges, until there is none. A face between two features could "
+    "follow one of them only, and a piecewise linear map which has both on isolines may have to "
+    "fold over there. Bisects the edges opposite vertices of large curvature and few edges, whose "
+    "index would have to be above 1/4 or below -2/4. The surface stays the same; nothing is copied "
+    "when there is nothing to split.",
     "Bank, Sherman, Weiser: Refinement algorithms and data structures for regular local mesh "
     "refinement (1983)",
     inputs,

@@ -202,11 +202,13 @@ typedef struct qc_matching {
 QC_API qc_status qc_matching_create(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
                                     qc_matching **out);
 
-/* Makes room for hard features: bisects every other edge both of whose ends are on features, and
- * all edges of faces with three feature edges, until there is none. Then no face has two feature
- * edges, and each side of a feature has a row of faces which are free to turn. Halves of features
- * are features; source_face and source_vertex as in qc_matching_split. Features which are not hard,
- * or nothing to split: the same objects, retained. sizing, sizing_out may both be NULL. Errors:
+/* Makes room for fields. Where features are hard, bisects every other edge both of whose ends are
+ * on them, and all edges of faces with three feature edges, until there is none; then no face has
+ * two feature edges, and each side of a feature has a row of faces which are free to turn. Bisects
+ * the edges opposite interior vertices off hard features whose index, by curvature and valence,
+ * could not come to lie from -2/4 to 1/4, until there is none. Halves of features are features;
+ * source_face and source_vertex as in qc_matching_split. Nothing to split: the same objects,
+ * retained. sizing, sizing_out may both be NULL. Errors:
  * ARGUMENT (sizing of another mesh), NOMEM, CANCELLED. */
 QC_API qc_status qc_features_split(qc_ctx *ctx, const qc_features *features,
                                    const qc_sizing *sizing, qc_mesh **mesh,

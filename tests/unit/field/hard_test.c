@@ -47,6 +47,37 @@ static void meshes_get_room(void **state) {
     }
 }
 
+/* The index of an interior vertex is within half its valence, in quarters, of its curvature; one
+ * from -2/4 to 1/4 is well within it after the split, and the surface is the same. */
+static void spikes_get_more_edges(void **state) {
+    qc_ctx *ctx = *state;
+    const int32_t t[] = {0, 1, 3, 0, 2, 1, 0, 3, 2, 1, 2, 3};
+    for (int height = 1; height <= 100; height *= 10) {
+        const double p[] = {1, 0, 0, -0.5, 0.8, 0, -0.5, -0.8, 0, 0, 0, -height};
+        qc_mesh *mesh = NULL, *out = NULL, *same = NULL;
+        qc_features *soft = NULL, *f = NULL, *again = NULL;
+        assert_int_equal(qc_mesh_create(ctx, 4, p, 4, t, &mesh), QC_OK);
+        assert_int_equal(qc_features_detect(ctx, mesh, 0.5, 0, NULL, &soft), QC_OK);
+        assert_int_equal(qc_features_split(ctx, soft, NULL, &out, &f, NULL), QC_OK);
+        assert_true(out->n_faces > mesh->n_faces && f->mesh == out);
+        assert_true(fabs(out->area / mesh->area - 1) < 1e-12);
+        assert_true(fabs(feature_length(ctx, f) / feature_length(ctx, soft) - 1) < 1e-12);
+        double *gauss = malloc(sizeof *gauss * (size_t)out->n_vertices);
+        double *valence = calloc((size_t)out->n_vertices, sizeof *valence);
+        assert_int_equal(qc_mesh_geometry(ctx, out, NULL, NULL, NULL, NULL, NULL, gauss), QC_OK);
+        for (int32_t c = 0; c < 3 * out->n_faces; c++) valence[out->face_vertex[c]]++;
+        for (int32_t v = 0; v < out->n_vertices; v++)
+            assert_true(gauss[v] * 2 / PI - 0.2 * valence[v] <= 1 &&
+                        gauss[v] * 2 / PI + 0.2 * valence[v] >= -2);
+        assert_int_equal(qc_features_split(ctx, f, NULL, &same, &again, NULL), QC_OK);
+        assert_true(same == out && again == f);
+        const void *made[] = {out, f, same, again, soft, mesh};
+        for (size_t i = 0; i < sizeof made / sizeof *made; i++) qc_object_release(made[i]);
+        free(gauss);
+        free(valence);
+    }
+}
+
 /* Soft features split nothing; the sizing goes along. */
 static void only_hard_features_split(void **state) {
     qc_ctx *ctx = *state;
@@ -295,6 +326,7 @@ static void given_fields_follow_what_they_agree_with(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(meshes_get_room),
+        cmocka_unit_test(spikes_get_more_edges),
         cmocka_unit_test(only_hard_features_split),
         cmocka_unit_test(crosses_stay_on_features),
         cmocka_unit_test(branch_points_move_elsewhere),
