@@ -1,6 +1,6 @@
 /* Chains of feature edges: gaps closed by hysteresis, noise and features which leave no room
  * dropped. A chain runs between vertices of feature degree other than 2, or round. */
-#include "sdk/mesh/internal.h"
+#include "sdk/mesh/crease_scale.h"
 
 enum { NAMED = 8 };
 
@@ -12,6 +12,7 @@ enum { NAMED = 8 };
 
 typedef struct chain {
     int32_t end[2];          /* vertices; equal when it is closed */
+    int32_t first, n;        /* edges in order: n from `first` in the network's list */
     double length, strength; /* strength: of the edges, on average */
     bool drop, lost, won;
 } chain;
@@ -23,12 +24,14 @@ typedef struct network {
     int32_t *degree;                 /* n_vertices                                               */
     uint8_t *node;                   /* n_vertices: chains end there                             */
     int32_t *of;                     /* n_edges: chain, -1 = none                                */
+    int32_t *list, n_list;           /* n_edges: edges by chain                                  */
     chain *chain;                    /* n_edges, n used                                          */
     int32_t n, named;
 } network;
 
 static void network_free(network *w) {
-    void *arrays[] = {w->edge, w->crease, w->length, w->angle, w->degree, w->node, w->of, w->chain};
+    void *arrays[] = {w->edge, w->crease, w->length, w->angle, w->degree,
+                      w->node, w->of,     w->list,   w->chain};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) qc__free(arrays[i]);
 }
 
@@ -42,9 +45,10 @@ static qc_status network_create(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t 
     w->degree = QC__NEW(ctx, int32_t, mesh->n_vertices);
     w->node = QC__NEW(ctx, uint8_t, mesh->n_vertices);
     w->of = QC__NEW(ctx, int32_t, E);
+    w->list = QC__NEW(ctx, int32_t, E);
     w->chain = QC__NEW(ctx, chain, E);
     if (!w->edge || !w->crease || !w->length || !w->angle || !w->degree || !w->node || !w->of ||
-        !w->chain)
+        !w->list || !w->chain)
         return QC_ERR_NOMEM;
     for (size_t e = 0; e < E; e++) w->edge[e] = edge[e];
     const qc_status status = qc__crease_angles(ctx, mesh, w->crease);
@@ -101,9 +105,11 @@ static double strength_of(const network *w, int32_t e) {
 /* The chain which leaves v over edge e. */
 static void walk(network *w, int32_t v, int32_t e) {
     chain *c = &w->chain[w->n];
-    *c = (chain){{v, v}, 0, 0, false, false, false};
+    *c = (chain){{v, v}, w->n_list, 0, 0, 0, false, false, false};
     while (e >= 0) {
         w->of[e] = w->n;
+        w->list[w->n_list++] = e;
+        c->n++;
         c->length += w->length[e];
         c->strength += w->length[e] * strength_of(w, e);
         c->end[1] = v = other_end(w->mesh, e, v);
@@ -120,7 +126,7 @@ static void find_chains(network *w) {
     const qc_mesh *mesh = w->mesh;
     count_degrees(w);
     for (int32_t v = 0; v < mesh->n_vertices; v++) w->node[v] = is_node(w, v);
-    w->n = 0;
+    w->n = w->n_list = 0;
     for (int32_t e = 0; e < mesh->n_edges; e++) w->of[e] = -1;
     for (int closed = 0; closed < 2; closed++)
         for (int32_t e = 0; e < mesh->n_edges; e++)
@@ -138,6 +144,25 @@ qc_status qc_features_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *ed
         find_chains(&w);
         for (int32_t e = 0; e < mesh->n_edges; e++) of[e] = w.of[e];
         *n = w.n;
+    }
+    network_free(&w);
+    return status;
+}
+
+qc_status qc_features_measure_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
+                                     qc_feature_chain *out) {
+    network w;
+    qc_status status = network_create(ctx, mesh, edge, &w);
+    if (status == QC_OK) find_chains(&w);
+    for (int32_t i = 0; status == QC_OK && i < w.n; i++) {
+        const chain *c = &w.chain[i];
+        qc_feature_chain o = {{c->end[0], c->end[1]}, c->n, 0, c->length, 0};
+        for (int32_t j = c->first; j < c->first + c->n; j++) {
+            o.kinds |= edge[w.list[j]];
+            o.angle += w.length[w.list[j]] * w.crease[w.list[j]];
+        }
+        if (c->length > 0) o.angle /= c->length;
+        out[i] = o;
     }
     network_free(&w);
     return status;
@@ -216,6 +241,31 @@ static void cut_corners(network *w) {
 
 /* --- pruning ---------------------------------------------------------------------------------- */
 
+/* Chains of creases along which the surface does not bend by `angle` on average, as measured at the
+ * scale of half a quad, once in so much of their length. */
+static qc_status mark_blunt(qc_ctx *ctx, network *w, double half, double angle) {
+    qc__crease_scale *scale = NULL;
+    const qc_status status = qc__crease_scale_create(ctx, w->mesh, half, &scale);
+    for (int32_t i = 0; status == QC_OK && i < w->n; i++) {
+        chain *c = &w->chain[i];
+        double sum = 0, total = 0, since = INFINITY, bend = 0;
+        for (int32_t j = c->first; j < c->first + c->n; j++) {
+            const int32_t e = w->list[j];
+            if (w->edge[e] != QC_FEATURE_CREASE) continue;
+            if (since >= half) {
+                bend = qc__crease_scale_at(scale, w->of, e);
+                since = 0;
+            }
+            since += w->length[e];
+            total += w->length[e];
+            sum += w->length[e] * bend;
+        }
+        c->drop = sum < angle * total;
+    }
+    qc__crease_scale_free(scale);
+    return status;
+}
+
 static void mark_short(network *w, double least) {
     for (int32_t i = 0; i < w->n; i++) {
         chain *c = &w->chain[i];
@@ -288,8 +338,13 @@ static int32_t drop_marked(network *w) {
     return dropped;
 }
 
-static qc_status prune(qc_ctx *ctx, network *w, double least, double sharp) {
+static qc_status prune(qc_ctx *ctx, network *w, double half, double angle, double least,
+                       double sharp) {
     int32_t dropped = 1, noise = 0;
+    find_chains(w);
+    qc_status status = mark_blunt(ctx, w, half, angle);
+    if (status != QC_OK) return status;
+    noise += drop_marked(w);
     while (dropped > 0) {
         find_chains(w);
         mark_short(w, least);
@@ -308,13 +363,13 @@ static qc_status prune(qc_ctx *ctx, network *w, double least, double sharp) {
     return QC_OK;
 }
 
-qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double least,
-                            double sharp, uint8_t *edge) {
+qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double half,
+                            double angle, double least, double sharp, uint8_t *edge) {
     network w;
     qc_status status = network_create(ctx, mesh, edge, &w);
     if (status == QC_OK) status = close_gaps(ctx, &w, weak);
     if (status == QC_OK) cut_corners(&w);
-    if (status == QC_OK) status = prune(ctx, &w, least, sharp);
+    if (status == QC_OK) status = prune(ctx, &w, half, angle, least, sharp);
     for (int32_t e = 0; status == QC_OK && e < mesh->n_edges; e++) edge[e] = w.edge[e];
     network_free(&w);
     return status;

@@ -1,23 +1,26 @@
 /* The ladder of attempts on one component. Where a map folds over, the steps run again: with other
  * integers, since rounding has many nearly equal answers and which of them unfold cannot be told
- * before the map is cut into quads; with more quads, since where quads are too large for the
- * distances between singularities and features none does; and in the end without the condition that
- * features lie on isolines, which some features contradict. */
+ * before the map is cut into quads; with fewer hard features, since some contradict each other or
+ * lie too close; and in the end without the condition that features lie on isolines, with more
+ * quads, since where quads are too large for the distances between singularities none does. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sdk/remesh/internal.h"
 
-/* One attempt: other integers, more quads (in steps of sqrt(2)), features as guides alone. */
+/* Which hard features an attempt keeps. */
+enum { ALL, LESS_ONE, LESS_QUARTER, LESS_HALF, BOUNDARIES, GUIDES };
+
+/* One attempt: other integers, more quads (in steps of sqrt(2)), features. */
 typedef struct rung {
-    int32_t other, finer;
-    bool soft;
+    int32_t other, finer, keep;
 } rung;
 
 static const rung ladder[] = {
-    {0, 0, false}, {1, 0, false}, {0, 1, false}, {0, 2, false}, {0, 0, true}, {1, 0, true},
-    {0, 1, true},  {0, 2, true},  {0, 3, true},  {0, 4, true},  {0, 6, true},
+    {0, 0, ALL},       {1, 0, ALL},        {0, 0, LESS_ONE}, {0, 0, LESS_ONE}, {0, 0, LESS_QUARTER},
+    {0, 0, LESS_HALF}, {0, 0, BOUNDARIES}, {0, 0, GUIDES},   {1, 0, GUIDES},   {0, 1, GUIDES},
+    {0, 2, GUIDES},    {0, 3, GUIDES},     {0, 4, GUIDES},   {0, 6, GUIDES},
 };
 enum { RUNGS = (int)(sizeof ladder / sizeof *ladder) };
 
@@ -30,6 +33,8 @@ typedef struct climb {
     uint64_t seed;           /* what the user set */
     double refine;
     bool hard;
+    char *drop;
+    qc__concessions given_up;
 } climb;
 
 static int64_t find_step(const qc_pipeline *pipeline, uint32_t first, const char *id) {
@@ -38,36 +43,73 @@ static int64_t find_step(const qc_pipeline *pipeline, uint32_t first, const char
     return -1;
 }
 
-/* A text from the pipeline is valid until the next call. */
-static void read_settings(climb *c) {
-    const char *step = qc_pipeline_step_name(c->pipeline, (uint32_t)c->round);
-    const char *text = qc_pipeline_get(c->pipeline, step, "seed");
-    c->seed = text ? strtoull(text, NULL, 10) : 0;
-    text = qc_pipeline_get(c->pipeline, step, "refine");
-    c->refine = text ? qc__parse_double(text, NULL) : 1;
-    if (c->features < 0) return;
-    step = qc_pipeline_step_name(c->pipeline, (uint32_t)c->features);
-    text = qc_pipeline_get(c->pipeline, step, "hard");
-    c->hard = text && strcmp(text, "true") == 0;
+static const char *name_of(const climb *c, int64_t step) {
+    return qc_pipeline_step_name(c->pipeline, (uint32_t)step);
 }
 
-/* Parameters of an attempt; {0, 0, !hard} are those the user set. */
+/* The features of the first attempt; without any there is nothing hard. */
+static qc_status find_features(climb *c) {
+    char name[128];
+    snprintf(name, sizeof name, "%s.features", name_of(c, c->features));
+    const qc_features *features = qc_bag_get(c->bag, name);
+    c->hard = c->hard && features && features->n_feature_edges > 0;
+    return c->hard ? qc__concessions_create(c->ctx, features, &c->given_up) : QC_OK;
+}
+
+/* A text from the pipeline is valid until the next call. */
+static qc_status read_settings(climb *c) {
+    const char *text = qc_pipeline_get(c->pipeline, name_of(c, c->round), "seed");
+    c->seed = text ? strtoull(text, NULL, 10) : 0;
+    text = qc_pipeline_get(c->pipeline, name_of(c, c->round), "refine");
+    c->refine = text ? qc__parse_double(text, NULL) : 1;
+    if (c->features < 0) return QC_OK;
+    text = qc_pipeline_get(c->pipeline, name_of(c, c->features), "hard");
+    c->hard = text && strcmp(text, "true") == 0;
+    text = qc_pipeline_get(c->pipeline, name_of(c, c->features), "drop");
+    c->drop = QC__NEW(c->ctx, char, text ? strlen(text) + 1 : 1);
+    if (!c->drop) return QC_ERR_NOMEM;
+    strcpy(c->drop, text ? text : "");
+    return find_features(c);
+}
+
+/* Adds the chains which are given up to those the user dropped. */
+static qc_status set_dropped(const climb *c) {
+    char *list = NULL;
+    qc_status status = qc__concessions_list(c->ctx, &c->given_up, &list);
+    if (status != QC_OK) return status;
+    const size_t size = strlen(c->drop) + strlen(list) + 3;
+    char *text = QC__NEW(c->ctx, char, size);
+    if (text) {
+        snprintf(text, size, "%s%s%s", c->drop, *c->drop && *list ? "; " : "", list);
+        status = qc_pipeline_set(c->pipeline, name_of(c, c->features), "drop", text);
+    }
+    qc__free(list);
+    qc__free(text);
+    return text ? status : QC_ERR_NOMEM;
+}
+
+/* Parameters of an attempt; {0, 0, ALL} are those the user set. */
 static qc_status set_rung(const climb *c, rung r) {
-    const char *step = qc_pipeline_step_name(c->pipeline, (uint32_t)c->round);
+    const char *step = name_of(c, c->round);
     char refine[40];
     qc__print_double(refine, sizeof refine, c->refine * pow(2, 0.5 * r.finer));
     qc_status status = qc__set_seed(c->pipeline, step, c->seed + (uint64_t)r.other);
     if (status == QC_OK) status = qc_pipeline_set(c->pipeline, step, "refine", refine);
     if (status != QC_OK || !c->hard) return status;
-    return qc_pipeline_set(c->pipeline, qc_pipeline_step_name(c->pipeline, (uint32_t)c->features),
-                           "hard", r.soft ? "false" : "true");
+    if (r.keep == ALL)
+        status = qc_pipeline_set(c->pipeline, name_of(c, c->features), "drop", c->drop);
+    else if (r.keep != GUIDES)
+        status = set_dropped(c);
+    if (status != QC_OK) return status;
+    return qc_pipeline_set(c->pipeline, name_of(c, c->features), "hard",
+                           r.keep == GUIDES ? "false" : "true");
 }
 
 /* Says what became of what was asked for. */
 static void warn_compromise(const climb *c, rung r, const char *reason) {
     const qc_sizing *sizing = qc_bag_latest(c->bag, QC_TYPE_SIZING);
     const qc_polygon_mesh *quads = qc_bag_latest(c->bag, QC_TYPE_POLYGON_MESH);
-    if (c->hard && r.soft)
+    if (c->hard && r.keep == GUIDES)
         qc__log(c->ctx, QC_LOG_WARNING,
                 "features guide the directions but are not edges of the quads: %s", reason);
     if (r.finer == 0 || !sizing || !quads) return;
@@ -79,20 +121,66 @@ static void warn_compromise(const climb *c, rung r, const char *reason) {
 }
 
 static const char *difference(rung from, rung to) {
-    if (from.soft != to.soft) return "features as guides alone";
+    if (to.keep == GUIDES && from.keep != GUIDES) return "features as guides alone";
+    if (to.keep != ALL && to.keep != GUIDES) return "fewer features";
     return to.finer > 0 ? "more quads" : "other integers";
 }
 
-/* Whether a failed attempt leaves the next one something to change. Rounding itself does not get
- * better by other integers, it raises the density by itself, and it needs the features to be there;
- * whatever a step before it has against hard features is not mended by other integers either. */
-static bool worth_trying(const climb *c, qc_status status, rung next) {
+/* Whether a step up to the rounding failed. */
+static bool failed_early(const climb *c) {
     const char *stage = qc_ctx_error(c->ctx)->stage;
-    if (status != QC_ERR_FAILED) return false;
     for (uint32_t i = c->first; i <= (uint32_t)c->round; i++)
-        if (strcmp(stage, qc_pipeline_step_name(c->pipeline, i)) == 0)
-            return c->hard && next.soft && c->features <= (int64_t)i;
+        if (strcmp(stage, name_of(c, i)) == 0) return true;
+    return false;
+}
+
+/* Whether a failed attempt leaves the next one something to change. What a step up to the rounding
+ * has against hard features is not mended by other integers, and the rounding raises the density by
+ * itself. */
+static bool worth_trying(const climb *c, rung next, rung before) {
+    const qc__concessions *f = &c->given_up;
+    if (!c->hard) return next.keep == GUIDES && !failed_early(c);
+    if (next.keep == ALL) return !failed_early(c);
+    if (next.keep == GUIDES) return before.keep != GUIDES || !failed_early(c);
+    return f->n_gone < f->n;
+}
+
+/* How many features the attempt is without; at least one more than before. */
+static int32_t count_dropped(const qc__concessions *f, int32_t keep) {
+    const int32_t part = keep == LESS_QUARTER ? (f->n + 3) / 4
+                         : keep == LESS_HALF  ? (f->n + 1) / 2
+                         : keep == BOUNDARIES ? f->n
+                                              : 0;
+    return part > f->n_gone ? part : f->n_gone + 1;
+}
+
+/* The place an error names: a face where quads are cut out, else a vertex. */
+static bool find_place(const climb *c, double place[3]) {
+    const qc_error *error = qc_ctx_error(c->ctx);
+    const qc_corner_map *map = qc_bag_latest(c->bag, QC_TYPE_CORNER_MAP);
+    const qc_mesh *mesh = map && !failed_early(c) ? map->mesh : qc_bag_latest(c->bag, QC_TYPE_MESH);
+    const bool face = !failed_early(c);
+    if (!mesh || error->where < 0 || error->where >= (face ? mesh->n_faces : mesh->n_vertices))
+        return false;
+    for (int i = 0; i < 3; i++) {
+        place[i] = 0;
+        for (int k = 0; k < 3; k++) {
+            const int64_t v = face ? mesh->face_vertex[3 * error->where + k] : error->where;
+            place[i] += mesh->position[3 * v + i] / 3;
+        }
+    }
     return true;
+}
+
+static qc_status give_up_features(climb *c, int32_t keep) {
+    double place[3];
+    const qc_sizing *sizing = qc_bag_latest(c->bag, QC_TYPE_SIZING);
+    const double quad = sizing ? sizing->edge_length : c->given_up.features->mesh->diagonal / 100;
+    const bool known = find_place(c, place);
+    char reason[512];
+    snprintf(reason, sizeof reason, "%s", qc_ctx_error(c->ctx)->text);
+    return qc__concessions_grow(c->ctx, &c->given_up, count_dropped(&c->given_up, keep),
+                                known ? place : NULL, quad, reason);
 }
 
 /* Steps from `from` on, apart up to the rounding, so that what they make is there for the next
@@ -111,28 +199,31 @@ static qc_status run_from(const climb *c, uint32_t from, double lo) {
     return status;
 }
 
-static qc_status run_rung(const climb *c, rung before, rung r) {
-    const bool again = c->hard && r.soft != before.soft; /* the field changes as well */
-    const qc_status status = set_rung(c, r);
+static qc_status run_rung(climb *c, rung before, rung r) {
+    const bool fewer = r.keep != ALL && r.keep != GUIDES;
+    qc_status status = fewer ? give_up_features(c, r.keep) : QC_OK;
+    const bool again = c->hard && (fewer || r.keep != before.keep); /* the field changes as well */
+    if (status == QC_OK) status = set_rung(c, r);
     return status == QC_OK ? run_from(c, (uint32_t)(again ? c->features : c->round), 1) : status;
 }
 
-static qc_status run_ladder(const climb *c, qc_status status) {
-    rung before = {0, 0, !c->hard};
+static qc_status run_ladder(climb *c, qc_status status) {
+    rung before = {0, 0, c->hard ? ALL : GUIDES};
     char reason[512];
     snprintf(reason, sizeof reason, "%s", qc_ctx_error(c->ctx)->text);
     for (int i = 1; i < RUNGS && status == QC_ERR_FAILED; i++) {
         const rung r = ladder[i];
-        const bool same = r.soft == before.soft && r.finer == 0 && r.other == 0;
-        if ((!c->hard && !r.soft) || same || !worth_trying(c, status, r)) continue;
-        if (r.finer == 1) snprintf(reason, sizeof reason, "%s", qc_ctx_error(c->ctx)->text);
+        const bool same = !c->hard && r.finer == 0 && r.other == 0;
+        if (same || !worth_trying(c, r, before)) continue;
+        if (r.finer == 1 || (r.keep == GUIDES && before.keep != GUIDES))
+            snprintf(reason, sizeof reason, "%s", qc_ctx_error(c->ctx)->text);
         qc__log(c->ctx, QC_LOG_WARNING, "%s; trying again with %s", qc_ctx_error(c->ctx)->text,
                 difference(before, r));
         status = run_rung(c, before, r);
         if (status == QC_OK) warn_compromise(c, r, reason);
         before = r;
     }
-    const qc_status restored = set_rung(c, (rung){0, 0, false});
+    const qc_status restored = set_rung(c, (rung){0, 0, ALL});
     return status == QC_OK ? restored : status;
 }
 
@@ -145,8 +236,11 @@ qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t fir
                .round = find_step(pipeline, first, "qc.round"),
                .features = find_step(pipeline, first, "qc.features")};
     if (c.round < 0) return qc_pipeline_run_range(pipeline, first, c.end, bag);
-    const qc_status status = run_from(&c, first, 0);
+    qc_status status = run_from(&c, first, 0);
     if (status != QC_ERR_FAILED) return status;
-    read_settings(&c);
-    return run_ladder(&c, status);
+    const qc_status read = read_settings(&c);
+    status = read == QC_OK ? run_ladder(&c, status) : read;
+    qc__concessions_clear(&c.given_up);
+    qc__free(c.drop);
+    return status;
 }

@@ -42,9 +42,28 @@ qc_status qc__density_restore(qc_pipeline *pipeline, const qc__density *density)
 
 /* The parameter "seed" of a step which has one. */
 qc_status qc__set_seed(qc_pipeline *pipeline, const char *step, uint64_t seed);
-/* Runs the steps from `first` on. Where one after qc.round fails, they run again from there with
- * other integers, a few times, then with more quads; each time a warning tells why. */
+/* Runs the steps from `first` on. Where a step fails, they run again with other integers, with
+ * fewer hard features, without any, and with more quads; each time a warning tells why. */
 qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t first, qc_bag *bag);
+
+/* Chains of hard features and those of them which are given up. */
+typedef struct qc__concessions {
+    const qc_features *features; /* retained: as found, before any is given up */
+    int32_t n_chains;
+    int32_t *of;             /* n_edges: chain, -1 */
+    qc_feature_chain *chain; /* n_chains */
+    int32_t n, *order;       /* those which are no boundary, the weakest first */
+    uint8_t *gone;           /* n_chains */
+    int32_t n_gone, named;
+} qc__concessions;
+qc_status qc__concessions_create(qc_ctx *ctx, const qc_features *features, qc__concessions *out);
+void qc__concessions_clear(qc__concessions *concessions);
+/* Gives up chains until n are gone: those within two quads of the place (NULL = none is known),
+ * then others, the weakest first; each is named by a warning. */
+qc_status qc__concessions_grow(qc_ctx *ctx, qc__concessions *concessions, int32_t n,
+                               const double *place, double quad, const char *reason);
+/* Their numbers as parameter `drop` of qc.features; *out is the caller's. */
+qc_status qc__concessions_list(qc_ctx *ctx, const qc__concessions *concessions, char **out);
 
 /* Fails where the quads of a component are not a manifold of quads with the topology of its mesh.
  */

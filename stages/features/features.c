@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "sdk/base/internal.h"
@@ -12,8 +13,8 @@
 #define DEFAULT_QUADS 10000.0
 
 typedef struct params {
-    double angle, weak, shortest, sharpest, reach;
-    const char *strokes;
+    double angle, weak, blunt, shortest, sharpest, reach;
+    const char *strokes, *drop;
     bool hard, groups, lines;
 } params;
 
@@ -48,6 +49,39 @@ static qc_status add_strokes(const qc_run *run, const qc_mesh *mesh, const char 
     return status;
 }
 
+/* Flags the chains in a list of numbers separated by blanks; *end is where it ends. */
+static qc_status read_list(const qc_run *run, const char *list, int32_t n, uint8_t *gone,
+                           const char **end) {
+    char *after = NULL;
+    for (*end = list;; *end = after) {
+        const long number = strtol(*end, &after, 10);
+        if (after == *end) break;
+        if (number < 0 || number >= n)
+            return (run->fail)(run, QC_ERR_ARGUMENT, -1, "`drop` names a chain which is not there");
+        gone[number] = 1;
+    }
+    *end += strspn(*end, " ");
+    if (**end == '\0' || **end == ';') return QC_OK;
+    return (run->fail)(run, QC_ERR_ARGUMENT, -1, "`drop` is no list of numbers");
+}
+
+/* Lists separated by semicolons; each numbers the chains which the one before has left. */
+static qc_status drop_chains(const qc_run *run, const qc_mesh *mesh, const char *list,
+                             uint8_t *edge) {
+    int32_t *chain = QC__NEW(run->ctx, int32_t, mesh->n_edges), n = 0;
+    qc_status status = chain ? QC_OK : QC_ERR_NOMEM;
+    for (const char *at = list; !status && *at; at += *at == ';') {
+        status = qc_features_chains(run->ctx, mesh, edge, chain, &n);
+        uint8_t *gone = status ? NULL : QC__ZERO(run->ctx, uint8_t, n);
+        if (!status) status = gone ? read_list(run, at, n, gone, &at) : QC_ERR_NOMEM;
+        for (int32_t e = 0; !status && e < mesh->n_edges; e++)
+            if (chain[e] >= 0 && gone[chain[e]]) edge[e] = 0;
+        qc__free(gone);
+    }
+    qc__free(chain);
+    return status;
+}
+
 static qc_status find(const qc_run *run, const params *given, const qc_mesh *mesh, double quad,
                       uint8_t *edge) {
     const double degree = PI / 180, reach = fmax(mesh->mean_edge_length, given->reach * quad);
@@ -62,8 +96,11 @@ static qc_status find(const qc_run *run, const params *given, const qc_mesh *mes
     if (!status && given->strokes && *given->strokes)
         status = add_strokes(run, mesh, given->strokes, reach, edge);
     if (status || !given->hard) return status;
-    return qc_features_prune(run->ctx, mesh, fmin(given->weak, given->angle) * degree,
-                             given->shortest * quad, given->sharpest * degree, edge);
+    status = qc_features_prune(run->ctx, mesh, fmin(given->weak, given->angle) * degree, 0.5 * quad,
+                               given->blunt * degree, given->shortest * quad,
+                               given->sharpest * degree, edge);
+    return status || !given->drop || !*given->drop ? status
+                                                   : drop_chains(run, mesh, given->drop, edge);
 }
 
 static qc_status features(const qc_run *run, const void *p) {
@@ -97,7 +134,7 @@ static const qc_port outputs[] = {
 static const qc_param table[] = {
     QC_PARAM_REAL(params, angle, 35, 0, 180, "deg",
                   "edges whose faces' normals differ by more are creases; 180 = boundaries only"),
-    QC_PARAM_BOOL(params, hard, false,
+    QC_PARAM_BOOL(params, hard, true,
                   "isolines have to follow the features; off: they guide the field only"),
     QC_PARAM_BOOL(params, lines, true, "`l` statements of the input are strokes"),
     QC_PARAM_BOOL(params, groups, false, "borders between groups or materials are features"),
@@ -107,11 +144,17 @@ static const qc_param table[] = {
                   "how far from the surface a stroke may be; at least one mean edge"),
     QC_PARAM_REAL(params, weak, 20, 0, 180, "deg",
                   "hard creases go on along edges above this angle where these join two features"),
+    QC_PARAM_REAL(params, blunt, 30, 0, 180, "deg",
+                  "hard creases at which the surface, seen at half a quad on either side, bends by "
+                  "less on average are noise or rounded"),
     QC_PARAM_REAL(params, shortest, 2, 0, 1e6, "quad",
                   "hard creases with a free end which are shorter are noise; closed ones below "
                   "twice this"),
     QC_PARAM_REAL(params, sharpest, 30, 0, 90, "deg",
                   "of two hard features which meet in a smaller angle the weaker one is dropped"),
+    QC_PARAM_TEXT(params, drop,
+                  "numbers of chains of hard features which are dropped then, separated by blanks; "
+                  "after a `;` the chains left are numbered anew; none by default"),
 };
 
 const qc_stage qc_stage_features = {

@@ -292,6 +292,16 @@ QC_API qc_status qc_features_add_strokes(qc_ctx *ctx, const qc_mesh *mesh, int32
  * no flag; *n chains. */
 QC_API qc_status qc_features_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                     int32_t *chain, int32_t *n);
+typedef struct qc_feature_chain {
+    int32_t end[2];  /* vertices; equal when it is closed */
+    int32_t n_edges; /* of the chain */
+    uint8_t kinds;   /* QC_FEATURE_... flags of its edges, or-ed */
+    double length;   /* units of the mesh */
+    double angle;    /* dihedral angle (radians), mean by length */
+} qc_feature_chain;
+/* The same chains measured: one entry for each of the *n of qc_features_chains. */
+QC_API qc_status qc_features_measure_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
+                                            qc_feature_chain *out);
 /* Closes gaps of creases along edges of dihedral angle above `weak` (radians) which lead on from a
  * free end to another feature, lets creases which take two sides of a face at an angle below 75
  * degrees take the third, then drops creases with a free end shorter than `least` (units of
@@ -299,8 +309,8 @@ QC_API qc_status qc_features_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint
  * `sharp` (radians) the weaker one, each named by a warning with the numbers of the input: creases
  * by their mean angle, then groups and strokes; the boundary stays. Repeats until nothing changes.
  */
-QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double least,
-                                   double sharp, uint8_t *edge);
+QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double half,
+                                   double angle, double least, double sharp, uint8_t *edge);
 
 /* --- mirror symmetry -------------------------------------------------------------------------- */
 
