@@ -69,7 +69,8 @@ qc_status qc_face_field_create(qc_ctx *ctx, const qc_mesh *mesh, const qc_comple
     return QC_OK;
 }
 
-qc_status qc_face_field_set_aligned(qc_ctx *ctx, qc_face_field *field, const uint8_t *edge) {
+qc_status qc_face_field_set_aligned(qc_ctx *ctx, qc_face_field *field, const uint8_t *edge,
+                                    double bend) {
     const qc_mesh *mesh = field->mesh;
     field_object *o = (field_object *)field;
     qc_complex *tangent = QC__NEW(ctx, qc_complex, 3 * (size_t)mesh->n_faces);
@@ -92,5 +93,6 @@ qc_status qc_face_field_set_aligned(qc_ctx *ctx, qc_face_field *field, const uin
     }
     qc__free(o->aligned);
     o->field.aligned = o->aligned = aligned;
+    o->field.bend = bend;
     return QC_OK;
 }

@@ -67,7 +67,7 @@ static qc_status align(qc_ctx *ctx, const qc_face_field *field, const uint8_t *k
         status = qc_field_align(ctx, field->mesh, kept, INFINITY, x, weight, trusted);
     }
     if (!status) status = qc_face_field_create(ctx, field->mesh, x, weight, trusted, &made);
-    if (!status) status = qc_face_field_set_aligned(ctx, made, kept);
+    if (!status) status = qc_face_field_set_aligned(ctx, made, kept, 0);
     qc__free(x);
     qc__free(weight);
     qc__free(trusted);

@@ -86,6 +86,7 @@ typedef struct qc__smoother {
     double *theta, *alpha;   /* n_edges, n_faces: work space of the solves                    */
     double *matched;         /* n_edges: theta of the next round                              */
     const uint8_t *aligned;  /* n_edges, may be NULL: hard features                           */
+    double bend;             /* as in qc_face_field */
     const qc_complex *guide; /* n_faces                                                       */
     qc_factor *factor;
 } qc__smoother;

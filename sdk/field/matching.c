@@ -137,7 +137,8 @@ static qc_status fill(qc_ctx *ctx, const qc_face_field *field, const int8_t *m,
         } else {
             qc__field_match(ctx, mesh, rho, field->x, o->m, o->theta);
             if (o->axis)
-                status = qc__sectors_open(ctx, mesh, field->aligned, edge, o->theta, o->m, NULL);
+                status = qc__sectors_open(ctx, mesh, field->aligned, field->bend, edge, o->theta,
+                                          o->m, NULL);
         }
         if (o->axis) measure_axes(field, edge, o->axis);
         if (!status) status = measure_indices(ctx, mesh, edge, o);

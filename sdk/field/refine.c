@@ -132,7 +132,7 @@ static qc_status carry_field(qc_ctx *ctx, const qc_face_field *old, const qc__re
     }
     if (!status && aligned) {
         qc__refinement_flags(b, old->mesh, old->aligned, aligned);
-        status = qc_face_field_set_aligned(ctx, field, aligned);
+        status = qc_face_field_set_aligned(ctx, field, aligned, old->bend);
     }
     qc__free(x);
     qc__free(weight);

@@ -56,7 +56,7 @@ qc_status qc__sectors_create(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *al
             const int32_t n = aligned[edge_before(mesh, c)] ? count_faces(mesh, aligned, c) : 0;
             if (n > 0) {
                 qc__sector *s = &all.sector[all.n++];
-                *s = (qc__sector){v, c, n, 0, 0};
+                *s = (qc__sector){v, c, n, 0, 0, 0};
                 status = measure(ctx, mesh, edge, theta, s);
             }
             c = qc_corner_ccw(mesh, c);
@@ -76,6 +76,7 @@ void qc__sectors_free(qc__sectors *sectors) {
 
 static int32_t wanted_turns(const qc__sector *s) {
     const double angle = 2 * s->angle / QC__PI;
+    if (s->wanted > 0) return s->wanted;
     if (s->turns >= 1 && fabs(s->turns - angle) < 1) return s->turns;
     return angle < 1 ? 1 : (int32_t)round(angle);
 }
@@ -109,12 +110,13 @@ static bool open_sector(const qc_mesh *mesh, const qc__sector *s, const uint8_t 
     return true;
 }
 
-qc_status qc__sectors_open(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *aligned,
+qc_status qc__sectors_open(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *aligned, double bend,
                            const qc_complex *edge, double *theta, int8_t *m, int32_t *changed) {
     qc__sectors all = {0, NULL};
     uint8_t *hard = QC__ZERO(ctx, uint8_t, mesh->n_vertices);
     qc_status status =
         hard ? qc__sectors_create(ctx, mesh, aligned, edge, theta, &all) : QC_ERR_NOMEM;
+    if (!status && bend > 0) status = qc__sectors_find_corners(ctx, mesh, edge, bend, &all);
     if (changed && !status) *changed = 0;
     for (int32_t e = 0; !status && e < mesh->n_edges; e++)
         if (aligned[e]) hard[mesh->edge_vertex[2 * e]] = hard[mesh->edge_vertex[2 * e + 1]] = 1;

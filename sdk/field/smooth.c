@@ -143,7 +143,7 @@ static void fill_right_hand_side(qc__smoother *s, const qc_complex *x) {
 static qc_status match(qc_ctx *ctx, const qc__smoother *s, const qc_complex *x, double *theta) {
     qc__field_match(ctx, s->mesh, s->c.rho, x, NULL, theta);
     if (!s->aligned) return QC_OK;
-    return qc__sectors_open(ctx, s->mesh, s->aligned, s->c.edge, theta, NULL, NULL);
+    return qc__sectors_open(ctx, s->mesh, s->aligned, s->bend, s->c.edge, theta, NULL, NULL);
 }
 
 /* One round; *changed: the straightest matching differs from the one solved for. */
@@ -172,7 +172,7 @@ static qc_status smooth_round(qc_ctx *ctx, qc__smoother *s, qc_complex *x, bool 
 
 qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *guide,
                           const double *weight, const uint8_t *trusted, const uint8_t *aligned,
-                          double lambda, int32_t rounds, qc_complex *x) {
+                          double bend, double lambda, int32_t rounds, qc_complex *x) {
     if (!(lambda >= 0 && lambda <= 1))
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "lambda = %g is not in [0, 1]", lambda);
     if (rounds < 1) return QC_OK;
@@ -184,6 +184,7 @@ qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *gu
         bool changed = true;
         s.guide = guide ? guide : x; /* x itself changes at the very end only */
         s.aligned = aligned;
+        s.bend = bend;
         memcpy(result, x, (size_t)mesh->n_faces * sizeof *x);
         status = match(ctx, &s, x, s.theta);
         for (int32_t i = 0; !status && changed && i < rounds; i++) {

@@ -66,6 +66,7 @@ static qc_status split_once(qc_ctx *ctx, const qc_features *f, const qc_sizing *
     if (!status) {
         qc__refinement_flags(&b, f->mesh, f->edge, edge);
         status = qc_features_create(ctx, b.mesh, edge, f->hard, &features);
+        if (!status) features->bend = f->bend;
     }
     if (!status && sizing) status = qc__refinement_sizing(ctx, &b, sizing, sizing_out);
     if (status)

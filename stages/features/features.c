@@ -11,6 +11,8 @@
 
 #define PI            3.14159265358979323846
 #define DEFAULT_QUADS 10000.0
+/* Quads within which a hard feature has to turn to have a corner there. */
+#define BEND 1.25
 
 typedef struct params {
     double angle, weak, blunt, shortest, sharpest, reach;
@@ -114,6 +116,7 @@ static qc_status features(const qc_run *run, const void *p) {
     if (!status) status = qc_features_create(run->ctx, mesh, edge, given->hard, &out);
     qc__free(edge);
     if (status) return status;
+    out->bend = BEND * quad;
     char text[96];
     snprintf(text, sizeof text, "%d feature edges, %d corners", (int)out->n_feature_edges,
              (int)out->n_corners);

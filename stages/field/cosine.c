@@ -23,7 +23,7 @@ static qc_status cosine(const qc_run *run, const void *p) {
     if (!status)
         status = qc_face_field_create(run->ctx, mesh, x, field->weight, field->trusted, &out);
     if (!status && field->aligned)
-        status = qc_face_field_set_aligned(run->ctx, out, field->aligned);
+        status = qc_face_field_set_aligned(run->ctx, out, field->aligned, field->bend);
     qc__free(x);
     if (!status) return run->output(run, "field", out);
     qc_object_release(out);

@@ -62,7 +62,7 @@ static qc_status curvature(const qc_run *run, const void *p) {
     qc_status status = w.x && w.kappa && w.weight && w.trusted ? compute(run, p, &w) : QC_ERR_NOMEM;
     if (!status) status = qc_face_field_create(run->ctx, mesh, w.x, w.weight, w.trusted, &out);
     if (!status && features && features->hard)
-        status = qc_face_field_set_aligned(run->ctx, out, features->edge);
+        status = qc_face_field_set_aligned(run->ctx, out, features->edge, features->bend);
     qc__free(w.x);
     qc__free(w.kappa);
     qc__free(w.weight);

@@ -27,7 +27,7 @@ static qc_status smooth_field(qc_ctx *ctx, const qc_face_field *field, const qc_
                                     given->detail * quad, x);
     if (!status)
         status = qc_field_smooth(ctx, mesh, field->x, field->weight, field->trusted, field->aligned,
-                                 lambda, (int32_t)given->rounds, x);
+                                 field->bend, lambda, (int32_t)given->rounds, x);
     if (!status && given->separate > 0)
         status =
             qc_field_separate(ctx, mesh, given->separate * quad, field->aligned, trusted, x, NULL);
@@ -46,7 +46,7 @@ static qc_status smooth(const qc_run *run, const void *p) {
     if (!status) status = smooth_field(run->ctx, field, run->input(run, "sizing"), p, trusted, x);
     if (!status) status = qc_face_field_create(run->ctx, mesh, x, field->weight, trusted, &out);
     if (!status && field->aligned)
-        status = qc_face_field_set_aligned(run->ctx, out, field->aligned);
+        status = qc_face_field_set_aligned(run->ctx, out, field->aligned, field->bend);
     qc__free(x);
     qc__free(trusted);
     if (!status) return run->output(run, "field", out);

@@ -29,7 +29,7 @@ static qc_status smoothest(const qc_run *run, const void *p) {
     qc_face_field *out = NULL;
     if (!status) status = qc_face_field_create(run->ctx, mesh, x, weight, trusted, &out);
     if (!status && guide && guide->aligned)
-        status = qc_face_field_set_aligned(run->ctx, out, guide->aligned);
+        status = qc_face_field_set_aligned(run->ctx, out, guide->aligned, guide->bend);
     qc__free(x);
     if (!status) return run->output(run, "field", out);
     qc_object_release(out);

@@ -72,6 +72,7 @@ typedef struct qc_face_field {
     int32_t
         is_vector; /* 1: x of one face goes with x of its neighbours (the gradient of a function),
                       so that no edge has a quarter turn; set it before the field is shared */
+    double bend;   /* of the features it is aligned to (qc_features) */
 } qc_face_field;
 /* Copies its arrays (weight, trusted may be NULL), normalises x, retains the mesh. ARGUMENT with
  * where = face when x is zero or not finite. */
@@ -80,7 +81,8 @@ QC_API qc_status qc_face_field_create(qc_ctx *ctx, const qc_mesh *mesh, const qc
                                       qc_face_field **out);
 /* Declares the flagged edges (n_edges, copied) hard features of a field which is not yet shared.
  * ARGUMENT with where = edge when the cross of a face beside it is more than 1e-6 off the edge. */
-QC_API qc_status qc_face_field_set_aligned(qc_ctx *ctx, qc_face_field *field, const uint8_t *edge);
+QC_API qc_status qc_face_field_set_aligned(qc_ctx *ctx, qc_face_field *field, const uint8_t *edge,
+                                           double bend);
 
 enum { QC_CURVATURE_HILDEBRANDT_POLTHIER = 0, QC_CURVATURE_COHEN_STEINER_MORVAN = 1 };
 /* Principal curvature directions (thesis 5.1.1): x = direction of the larger |curvature|; kappa (2
@@ -142,12 +144,12 @@ QC_API qc_status qc_field_extend(qc_ctx *ctx, const qc_mesh *mesh, const double 
  * qc_field_stability). weight NULL = 1; trusted NULL = all faces; both NULL: lambda acts as 1. x in
  * place. Faces of infinite weight are no unknowns and stay to the last bit. aligned (n_edges
  * flags, may be NULL): hard features, beside which faces have infinite weight; the matching then is
- * that of qc_matching_create with open sectors. The result is a local
- * minimum: start from qc_field_smoothest with alignment (1 - lambda) / lambda for few
- * singularities. Errors: ARGUMENT, NOMEM, CANCELLED. */
+ * that of qc_matching_create with open sectors and corners within `bend`, as in qc_face_field. The
+ * result is a local minimum: start from qc_field_smoothest with alignment (1 - lambda) / lambda for
+ * few singularities. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_smooth(qc_ctx *ctx, const qc_mesh *mesh, const qc_complex *guide,
                                  const double *weight, const uint8_t *trusted,
-                                 const uint8_t *aligned, double lambda, int32_t rounds,
+                                 const uint8_t *aligned, double bend, double lambda, int32_t rounds,
                                  qc_complex *x);
 /* Nonlinear smoothing (2007 paper, 4.3): rotates the crosses by real alpha_t which minimise lambda
  * sum A_e (1 - cos 4 (theta_e - alpha_s + alpha_t)) + (1 - lambda) sum w_t A_t alpha_t^2, the

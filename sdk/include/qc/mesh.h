@@ -265,6 +265,8 @@ typedef struct qc_features {
     const uint8_t *edge;   /* n_edges: QC_FEATURE_... flags   */
     const uint8_t *vertex; /* n_vertices: number of feature edges at it, saturated at 255 */
     bool hard;             /* isolines have to follow them; false: they guide the field only */
+    double bend; /* hard ones have a corner where they turn within this length (units of the mesh);
+                    0: from edge to edge; set it before the features are shared */
 } qc_features;
 /* Features from their flags (n_edges, copied). */
 QC_API qc_status qc_features_create(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,

@@ -5,6 +5,7 @@
 
 enum {
     REFINEMENTS = 6,
+    ALIGNED_REFINEMENTS = 2, /* with hard features, of which some had better go than that */
     DENSITY_ROUNDS = 24,
     NEWTON_ROUNDS = 5,   /* of these; then scales about the best are scanned */
     WINDING_ROUNDS = 13, /* in so many, cones which wind wrong are a reason to go on, ... */
@@ -62,9 +63,21 @@ static qc_status meet_refined(qc__rounding *r, double refine) {
     return meet_density(r);
 }
 
+/* Hard features which no integers keep apart from points and each other. */
+static qc_status refuse_collisions(const qc__rounding *r) {
+    if (r->seams->n_levels == 0 || r->best_collisions == 0) return QC_OK;
+    for (int32_t j = 0; j < r->seams->n_free; j++) r->target[j] = r->best_scale * r->period[j];
+    const int32_t pair = qc__first_collision(r->separation, r->target, r->best_rounded);
+    const int32_t v = pair < 0 ? -1 : r->separation->vertex[2 * pair];
+    return qc__fail(r->ctx, QC_ERR_FAILED, v,
+                    "%d pairs of singularities or hard features are too close for this density "
+                    "(first: vertex %d); try a finer one or fewer features",
+                    (int)r->best_collisions, (int)v);
+}
+
 /* Where the quads asked for are too large for the distances between singularities and features, no
  * integers keep these apart or let the cones wind right: then smaller ones are taken, in steps of
- * sqrt(2), up to 8 times as many. */
+ * sqrt(2), up to 8 times as many; with hard features twice as many. */
 qc_status qc__round_meet(qc__rounding *r) {
     const double asked = r->options.refine;
     const bool always = r->options.quantize >= QC_QUANTIZE_ALWAYS && !r->options.trial;
@@ -78,11 +91,13 @@ qc_status qc__round_meet(qc__rounding *r) {
     if (quantized) return status;
     const int32_t pairs = r->best_collisions, wrong = r->best_wrong;
     if (status != QC_OK || r->options.trial || !is_hopeless(r)) return status;
-    for (int32_t k = 1; k <= REFINEMENTS && status == QC_OK && is_hopeless(r); k++)
+    const int32_t most = r->seams->n_levels > 0 ? ALIGNED_REFINEMENTS : REFINEMENTS;
+    for (int32_t k = 1; k <= most && status == QC_OK && is_hopeless(r); k++)
         status = meet_refined(r, asked * pow(2, 0.5 * k));
     if (status != QC_OK) return status;
     const bool helped = !is_hopeless(r) || r->best_collisions < pairs || 2 * r->best_wrong < wrong;
     if (!helped) status = meet_refined(r, asked);
+    if (status == QC_OK) status = refuse_collisions(r);
     if (status == QC_OK)
         qc__log(r->ctx, QC_LOG_WARNING,
                 "%d pairs of singularities or features are too close for this density, where %d "

@@ -251,3 +251,15 @@ qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }
+
+int32_t qc__first_collision(const qc__separation *s, const double *t, const double *z) {
+    for (int32_t p = 0; p < s->n; p++) {
+        double _Complex now = 0, wanted = 0;
+        for (int64_t i = s->start[p]; i < s->start[p + 1]; i++) {
+            now += s->value[i] * z[s->variable[i]];
+            wanted += s->value[i] * t[s->variable[i]];
+        }
+        if (collides(&(search){.wanted = &wanted, .coincidence = 1}, 0, now)) return p;
+    }
+    return -1;
+}

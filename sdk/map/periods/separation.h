@@ -32,5 +32,7 @@ void qc__separation_free(qc__separation *separation);
  * *energy is updated; *left = pairs which still collide. P: n_free^2. */
 qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_free,
                        const double *P, const double *t, double *z, double *energy, int32_t *left);
+/* The first pair which integers z let collide, where t has it apart; -1 = none. */
+int32_t qc__first_collision(const qc__separation *separation, const double *t, const double *z);
 
 #endif

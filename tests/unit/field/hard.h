@@ -137,7 +137,7 @@ static inline qc_face_field *hard_field(qc_ctx *ctx, const qc_features *f) {
     memcpy(guide, x, F * sizeof *x);
     assert_int_equal(qc_field_smoothest(ctx, mesh, weight, trusted, 1, quad / 2, x), QC_OK);
     check_along(ctx, mesh, f->edge, x);
-    assert_int_equal(qc_field_smooth(ctx, mesh, guide, weight, trusted, f->edge, 0.5, 20, x),
+    assert_int_equal(qc_field_smooth(ctx, mesh, guide, weight, trusted, f->edge, 0, 0.5, 20, x),
                      QC_OK);
     check_along(ctx, mesh, f->edge, x);
     assert_int_equal(qc_field_separate(ctx, mesh, 0.7 * quad, f->edge, trusted, x, NULL), QC_OK);

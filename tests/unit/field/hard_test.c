@@ -209,7 +209,7 @@ static void sectors_open_in_random_fields(void **state) {
         assert_int_equal(
             qc_field_align(ctx, f->mesh, f->edge, (double)INFINITY, x, weight, trusted), QC_OK);
         assert_int_equal(qc_face_field_create(ctx, f->mesh, x, weight, trusted, &field), QC_OK);
-        assert_int_equal(qc_face_field_set_aligned(ctx, field, f->edge), QC_OK);
+        assert_int_equal(qc_face_field_set_aligned(ctx, field, f->edge, 0), QC_OK);
         assert_int_equal(qc_matching_create(ctx, field, NULL, &m), QC_OK);
         check_matching(ctx, m);
         const void *made[] = {m, field, f};
@@ -270,10 +270,10 @@ static qc_status every_step(qc_ctx *ctx, const void *data) {
     assert_true(status || fine->n_faces <= 256);
     if (!status) status = qc_field_align(ctx, fine, f->edge, (double)INFINITY, x, weight, trusted);
     if (!status) status = qc_field_smoothest(ctx, fine, weight, trusted, 1, 0.2, x);
-    if (!status) status = qc_field_smooth(ctx, fine, NULL, weight, trusted, f->edge, 0.5, 3, x);
+    if (!status) status = qc_field_smooth(ctx, fine, NULL, weight, trusted, f->edge, 0, 0.5, 3, x);
     if (!status) status = qc_field_separate(ctx, fine, 0.2, f->edge, trusted, x, NULL);
     if (!status) status = qc_face_field_create(ctx, fine, x, weight, trusted, &field);
-    if (!status) status = qc_face_field_set_aligned(ctx, field, f->edge);
+    if (!status) status = qc_face_field_set_aligned(ctx, field, f->edge, 0);
     if (!status) status = qc_field_follow(ctx, field, f->edge, 0.1, &given);
     if (!status) status = qc_matching_create(ctx, field, NULL, &m);
     if (!status) status = qc_matching_split(ctx, m, s, &finer, &t, &split);

@@ -55,12 +55,12 @@ static void hard_features_have_an_axis(void **state) {
     qc_matching *m = NULL;
     assert_int_equal(qc_tangent_edges(ctx, mesh, tangent), QC_OK);
     assert_int_equal(qc_face_field_create(ctx, mesh, x, NULL, NULL, &field), QC_OK);
-    assert_int_equal(qc_face_field_set_aligned(ctx, field, edge), QC_ERR_ARGUMENT);
+    assert_int_equal(qc_face_field_set_aligned(ctx, field, edge, 0), QC_ERR_ARGUMENT);
     assert_null(field->aligned);
     qc_object_release(field);
     assert_int_equal(qc_field_align(ctx, mesh, edge, 1, x, weight, trusted), QC_OK);
     assert_int_equal(qc_face_field_create(ctx, mesh, x, NULL, NULL, &field), QC_OK);
-    assert_int_equal(qc_face_field_set_aligned(ctx, field, edge), QC_OK);
+    assert_int_equal(qc_face_field_set_aligned(ctx, field, edge, 0), QC_OK);
     assert_int_equal(qc_matching_create(ctx, field, NULL, &m), QC_OK);
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         if (!edge[e]) {

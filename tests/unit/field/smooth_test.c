@@ -73,7 +73,7 @@ static void rounds_lower_the_energy_to_a_critical_point(void **state) {
             double *gradient = malloc(sizeof *gradient * g.F), largest = 0;
             double before = energy(ctx, &g, lambdas[i], gradient), E = before;
             for (int round = 0; round < 60; round++) {
-                assert_int_equal(qc_field_smooth(ctx, mesh, g.guide, g.weight, g.trusted, NULL,
+                assert_int_equal(qc_field_smooth(ctx, mesh, g.guide, g.weight, g.trusted, NULL, 0,
                                                  lambdas[i], 1, g.x),
                                  QC_OK);
                 double after = energy(ctx, &g, lambdas[i], gradient);
@@ -96,8 +96,9 @@ static void many_rounds_are_one_round_many_times(void **state) {
     memcpy(y, g.guide, sizeof *y * g.F);
     for (int i = 0; i < 3; i++)
         assert_int_equal(
-            qc_field_smooth(ctx, g.mesh, g.guide, g.weight, g.trusted, NULL, 0.7, 1, g.x), QC_OK);
-    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, NULL, 0.7, 3, y),
+            qc_field_smooth(ctx, g.mesh, g.guide, g.weight, g.trusted, NULL, 0, 0.7, 1, g.x),
+            QC_OK);
+    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, NULL, 0, 0.7, 3, y),
                      QC_OK);
     for (size_t t = 0; t < g.F; t++) assert_true(cross_angle(g.x[t], y[t]) < 1e-9);
     free(y);
@@ -108,7 +109,7 @@ static void strong_alignment_keeps_the_guide(void **state) {
     qc_ctx *ctx = *state;
     guided g = random_guide(ctx, ellipsoid(ctx, 12, 8, 1, 1, 2), 8);
     for (size_t t = 0; t < g.F; t++) g.weight[t] += 0.1;
-    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, NULL, 0, 10, g.x),
+    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, NULL, 0, 0, 10, g.x),
                      QC_OK);
     for (size_t t = 0; t < g.F; t++)
         if (g.trusted[t]) assert_true(cross_angle(g.x[t], g.guide[t]) < 1e-3);
@@ -128,7 +129,7 @@ static void scale_and_threads_do_not_matter(void **state) {
         double s = i == 2 ? 1e6 : 1;
         guided g = random_guide(ctx, ellipsoid(ctx, 40, 25, s, 1.5 * s, 2 * s), 9);
         assert_int_equal(
-            qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, NULL, 0.8, 20, g.x), QC_OK);
+            qc_field_smooth(ctx, g.mesh, NULL, g.weight, g.trusted, NULL, 0, 0.8, 20, g.x), QC_OK);
         qc_matching *match_i = match(ctx, g.mesh, g.x);
         F = g.F;
         E = (size_t)g.mesh->n_edges;
@@ -153,11 +154,11 @@ static void scale_and_threads_do_not_matter(void **state) {
 static void bad_arguments_leave_the_field_alone(void **state) {
     qc_ctx *ctx = *state;
     guided g = random_guide(ctx, grid(ctx, PLANE, 3, 3, 1), 10);
-    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, NULL, 1.1, 5, g.x),
+    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, NULL, 0, 1.1, 5, g.x),
                      QC_ERR_ARGUMENT);
-    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, NULL, (double)NAN, 5, g.x),
+    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, NULL, 0, (double)NAN, 5, g.x),
                      QC_ERR_ARGUMENT);
-    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, NULL, 0.5, 0, g.x), QC_OK);
+    assert_int_equal(qc_field_smooth(ctx, g.mesh, NULL, NULL, NULL, NULL, 0, 0.5, 0, g.x), QC_OK);
     assert_memory_equal(g.x, g.guide, sizeof *g.x * g.F);
     release(&g);
 }
