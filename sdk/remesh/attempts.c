@@ -33,7 +33,6 @@ typedef struct climb {
     uint64_t seed;           /* what the user set */
     double refine;
     bool hard;
-    char *drop;
     qc__concessions given_up;
 } climb;
 
@@ -47,12 +46,16 @@ static const char *name_of(const climb *c, int64_t step) {
     return qc_pipeline_step_name(c->pipeline, (uint32_t)step);
 }
 
+static void name_features(const climb *c, char name[128]) {
+    snprintf(name, 128, "%s.features", name_of(c, c->features));
+}
+
 /* The features of the first attempt; without any there is nothing hard. */
 static qc_status find_features(climb *c) {
     char name[128];
-    snprintf(name, sizeof name, "%s.features", name_of(c, c->features));
+    name_features(c, name);
     const qc_features *features = qc_bag_get(c->bag, name);
-    c->hard = c->hard && features && features->n_feature_edges > 0;
+    c->hard = features && features->hard && features->n_feature_edges > 0;
     return c->hard ? qc__concessions_create(c->ctx, features, &c->given_up) : QC_OK;
 }
 
@@ -62,30 +65,18 @@ static qc_status read_settings(climb *c) {
     c->seed = text ? strtoull(text, NULL, 10) : 0;
     text = qc_pipeline_get(c->pipeline, name_of(c, c->round), "refine");
     c->refine = text ? qc__parse_double(text, NULL) : 1;
-    if (c->features < 0) return QC_OK;
-    text = qc_pipeline_get(c->pipeline, name_of(c, c->features), "hard");
-    c->hard = text && strcmp(text, "true") == 0;
-    text = qc_pipeline_get(c->pipeline, name_of(c, c->features), "drop");
-    c->drop = QC__NEW(c->ctx, char, text ? strlen(text) + 1 : 1);
-    if (!c->drop) return QC_ERR_NOMEM;
-    strcpy(c->drop, text ? text : "");
-    return find_features(c);
+    return c->features < 0 ? QC_OK : find_features(c);
 }
 
-/* Adds the chains which are given up to those the user dropped. */
-static qc_status set_dropped(const climb *c) {
-    char *list = NULL;
-    qc_status status = qc__concessions_list(c->ctx, &c->given_up, &list);
-    if (status != QC_OK) return status;
-    const size_t size = strlen(c->drop) + strlen(list) + 3;
-    char *text = QC__NEW(c->ctx, char, size);
-    if (text) {
-        snprintf(text, size, "%s%s%s", c->drop, *c->drop && *list ? "; " : "", list);
-        status = qc_pipeline_set(c->pipeline, name_of(c, c->features), "drop", text);
-    }
-    qc__free(list);
-    qc__free(text);
-    return text ? status : QC_ERR_NOMEM;
+/* Replaces the features by those which are left. */
+static qc_status put_features(const climb *c) {
+    char name[128];
+    qc_features *left = NULL;
+    name_features(c, name);
+    qc_status status = qc__concessions_features(c->ctx, &c->given_up, &left);
+    if (status == QC_OK) status = qc_bag_put(c->bag, name, left);
+    qc_object_release(left);
+    return status;
 }
 
 /* Parameters of an attempt; {0, 0, ALL} are those the user set. */
@@ -96,11 +87,6 @@ static qc_status set_rung(const climb *c, rung r) {
     qc_status status = qc__set_seed(c->pipeline, step, c->seed + (uint64_t)r.other);
     if (status == QC_OK) status = qc_pipeline_set(c->pipeline, step, "refine", refine);
     if (status != QC_OK || !c->hard) return status;
-    if (r.keep == ALL)
-        status = qc_pipeline_set(c->pipeline, name_of(c, c->features), "drop", c->drop);
-    else if (r.keep != GUIDES)
-        status = set_dropped(c);
-    if (status != QC_OK) return status;
     return qc_pipeline_set(c->pipeline, name_of(c, c->features), "hard",
                            r.keep == GUIDES ? "false" : "true");
 }
@@ -201,10 +187,13 @@ static qc_status run_from(const climb *c, uint32_t from, double lo) {
 
 static qc_status run_rung(climb *c, rung before, rung r) {
     const bool fewer = r.keep != ALL && r.keep != GUIDES;
+    const bool soft = c->hard && r.keep == GUIDES && before.keep != GUIDES;
     qc_status status = fewer ? give_up_features(c, r.keep) : QC_OK;
-    const bool again = c->hard && (fewer || r.keep != before.keep); /* the field changes as well */
+    if (status == QC_OK && fewer) status = put_features(c);
     if (status == QC_OK) status = set_rung(c, r);
-    return status == QC_OK ? run_from(c, (uint32_t)(again ? c->features : c->round), 1) : status;
+    /* with other features the field changes as well */
+    const int64_t from = soft ? c->features : fewer ? c->features + 1 : c->round;
+    return status == QC_OK ? run_from(c, (uint32_t)from, 1) : status;
 }
 
 static qc_status run_ladder(climb *c, qc_status status) {
@@ -241,6 +230,5 @@ qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t fir
     const qc_status read = read_settings(&c);
     status = read == QC_OK ? run_ladder(&c, status) : read;
     qc__concessions_clear(&c.given_up);
-    qc__free(c.drop);
     return status;
 }

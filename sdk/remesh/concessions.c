@@ -124,14 +124,14 @@ qc_status qc__concessions_grow(qc_ctx *ctx, qc__concessions *c, int32_t n, const
     return QC_OK;
 }
 
-qc_status qc__concessions_list(qc_ctx *ctx, const qc__concessions *c, char **out) {
-    size_t size = 1, at = 0;
-    for (int32_t i = 0; i < c->n_chains; i++) size += c->gone[i] ? 12 : 0;
-    char *text = QC__NEW(ctx, char, size);
-    if (!text) return QC_ERR_NOMEM;
-    text[0] = '\0';
-    for (int32_t i = 0; i < c->n_chains; i++)
-        if (c->gone[i]) at += (size_t)snprintf(text + at, size - at, "%d ", (int)i);
-    *out = text;
-    return QC_OK;
+qc_status qc__concessions_features(qc_ctx *ctx, const qc__concessions *c, qc_features **out) {
+    const qc_mesh *mesh = c->features->mesh;
+    uint8_t *edge = QC__NEW(ctx, uint8_t, mesh->n_edges);
+    if (!edge) return QC_ERR_NOMEM;
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        edge[e] = c->of[e] >= 0 && c->gone[c->of[e]] ? 0 : c->features->edge[e];
+    const qc_status status = qc_features_create(ctx, mesh, edge, c->features->hard, out);
+    if (status == QC_OK) (*out)->bend = c->features->bend;
+    qc__free(edge);
+    return status;
 }

@@ -62,8 +62,9 @@ void qc__concessions_clear(qc__concessions *concessions);
  * then others, the weakest first; each is named by a warning. */
 qc_status qc__concessions_grow(qc_ctx *ctx, qc__concessions *concessions, int32_t n,
                                const double *place, double quad, const char *reason);
-/* Their numbers as parameter `drop` of qc.features; *out is the caller's. */
-qc_status qc__concessions_list(qc_ctx *ctx, const qc__concessions *concessions, char **out);
+/* The features which are left. */
+qc_status qc__concessions_features(qc_ctx *ctx, const qc__concessions *concessions,
+                                   qc_features **out);
 
 /* Fails where the quads of a component are not a manifold of quads with the topology of its mesh.
  */

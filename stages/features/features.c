@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "sdk/base/internal.h"
@@ -16,7 +15,7 @@
 
 typedef struct params {
     double angle, weak, blunt, shortest, sharpest, reach;
-    const char *strokes, *drop;
+    const char *strokes;
     bool hard, groups, lines;
 } params;
 
@@ -51,39 +50,6 @@ static qc_status add_strokes(const qc_run *run, const qc_mesh *mesh, const char 
     return status;
 }
 
-/* Flags the chains in a list of numbers separated by blanks; *end is where it ends. */
-static qc_status read_list(const qc_run *run, const char *list, int32_t n, uint8_t *gone,
-                           const char **end) {
-    char *after = NULL;
-    for (*end = list;; *end = after) {
-        const long number = strtol(*end, &after, 10);
-        if (after == *end) break;
-        if (number < 0 || number >= n)
-            return (run->fail)(run, QC_ERR_ARGUMENT, -1, "`drop` names a chain which is not there");
-        gone[number] = 1;
-    }
-    *end += strspn(*end, " ");
-    if (**end == '\0' || **end == ';') return QC_OK;
-    return (run->fail)(run, QC_ERR_ARGUMENT, -1, "`drop` is no list of numbers");
-}
-
-/* Lists separated by semicolons; each numbers the chains which the one before has left. */
-static qc_status drop_chains(const qc_run *run, const qc_mesh *mesh, const char *list,
-                             uint8_t *edge) {
-    int32_t *chain = QC__NEW(run->ctx, int32_t, mesh->n_edges), n = 0;
-    qc_status status = chain ? QC_OK : QC_ERR_NOMEM;
-    for (const char *at = list; !status && *at; at += *at == ';') {
-        status = qc_features_chains(run->ctx, mesh, edge, chain, &n);
-        uint8_t *gone = status ? NULL : QC__ZERO(run->ctx, uint8_t, n);
-        if (!status) status = gone ? read_list(run, at, n, gone, &at) : QC_ERR_NOMEM;
-        for (int32_t e = 0; !status && e < mesh->n_edges; e++)
-            if (chain[e] >= 0 && gone[chain[e]]) edge[e] = 0;
-        qc__free(gone);
-    }
-    qc__free(chain);
-    return status;
-}
-
 static qc_status find(const qc_run *run, const params *given, const qc_mesh *mesh, double quad,
                       uint8_t *edge) {
     const double degree = PI / 180, reach = fmax(mesh->mean_edge_length, given->reach * quad);
@@ -98,11 +64,9 @@ static qc_status find(const qc_run *run, const params *given, const qc_mesh *mes
     if (!status && given->strokes && *given->strokes)
         status = add_strokes(run, mesh, given->strokes, reach, edge);
     if (status || !given->hard) return status;
-    status = qc_features_prune(run->ctx, mesh, fmin(given->weak, given->angle) * degree, 0.5 * quad,
-                               given->blunt * degree, given->shortest * quad,
-                               given->sharpest * degree, edge);
-    return status || !given->drop || !*given->drop ? status
-                                                   : drop_chains(run, mesh, given->drop, edge);
+    return qc_features_prune(run->ctx, mesh, fmin(given->weak, given->angle) * degree, 0.5 * quad,
+                             given->blunt * degree, given->shortest * quad,
+                             given->sharpest * degree, edge);
 }
 
 static qc_status features(const qc_run *run, const void *p) {
@@ -155,9 +119,6 @@ static const qc_param table[] = {
                   "twice this"),
     QC_PARAM_REAL(params, sharpest, 30, 0, 90, "deg",
                   "of two hard features which meet in a smaller angle the weaker one is dropped"),
-    QC_PARAM_TEXT(params, drop,
-                  "numbers of chains of hard features which are dropped then, separated by blanks; "
-                  "after a `;` the chains left are numbered anew; none by default"),
 };
 
 const qc_stage qc_stage_features = {

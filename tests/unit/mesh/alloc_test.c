@@ -20,6 +20,7 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     qc_polygon_topology topology;
     uint8_t cut[6], edge[6];
     int32_t chain[6], n_chains;
+    qc_feature_chain measured[6];
     int32_t offset[1];
     double gauss[4];
     qc_status s = qc_mesh_create_from(ctx, 4, position, 4, face, face, face, &m);
@@ -30,7 +31,8 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     if (s == QC_OK) s = qc_features_detect(ctx, m, 0.5, 2, face, &features);
     for (int i = 0; s == QC_OK && i < 6; i++) edge[i] = features->edge[i];
     if (s == QC_OK) s = qc_features_chains(ctx, m, edge, chain, &n_chains);
-    if (s == QC_OK) s = qc_features_prune(ctx, m, 0.2, 0.1, 2, edge);
+    if (s == QC_OK) s = qc_features_measure_chains(ctx, m, edge, measured);
+    if (s == QC_OK) s = qc_features_prune(ctx, m, 0.2, 0.1, 0.1, 0.1, 2, edge);
     if (s == QC_OK) s = qc_polygon_mesh_create(ctx, 4, 4, 12, 2, 1, 7, &p);
     for (int i = 0; s == QC_OK && i < 12; i++) p->face_vertex[i] = face[i];
     for (int i = 0; s == QC_OK && i < 5; i++) p->face_offset[i] = 3 * i;

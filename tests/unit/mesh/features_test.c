@@ -136,13 +136,13 @@ static void test_prune(void **state) {
     edge[missing] = 0;
     edge[extra] = QC_FEATURE_CREASE;
     const double length = m->mean_edge_length;
-    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0.1 * length, 0, edge), QC_OK);
+    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0, 0, 0.1 * length, 0, edge), QC_OK);
     assert_int_equal(edge[missing], QC_FEATURE_CREASE);
     assert_int_equal(edge[extra], QC_FEATURE_CREASE);
-    assert_int_equal(qc_features_prune(ctx, m, 0.4, 2 * length, 0, edge), QC_OK);
+    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0, 0, 2 * length, 0, edge), QC_OK);
     assert_memory_equal(edge, f->edge, (size_t)m->n_edges);
     /* longer than all edges: only what has a free end goes */
-    assert_int_equal(qc_features_prune(ctx, m, 0.4, 1e9, 0, edge), QC_OK);
+    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0, 0, 1e9, 0, edge), QC_OK);
     assert_memory_equal(edge, f->edge, (size_t)m->n_edges);
     free(edge);
     free(chain);
@@ -162,10 +162,10 @@ static void test_zigzag(void **state) {
         c++;
     const int32_t side[] = {m->halfedge_edge[qc_next(c)], m->halfedge_edge[qc_prev(c)]};
     edge[side[0]] = edge[side[1]] = QC_FEATURE_LINE;
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, edge), QC_OK);
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 0, edge), QC_OK);
     assert_true(count(m, edge) == 2 && edge[side[0]] && edge[side[1]]);
     edge[side[0]] = edge[side[1]] = QC_FEATURE_CREASE;
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, edge), QC_OK);
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 0, edge), QC_OK);
     assert_true(count(m, edge) == 1 && edge[m->halfedge_edge[c]] == QC_FEATURE_CREASE);
     free(angle);
     free(edge);
@@ -197,10 +197,10 @@ static void test_sharp_features(void **state) {
     assert_int_equal(
         qc_features_add_strokes(ctx, m, m->n_vertices, m->position, 4, stroke, 0, edge), QC_OK);
     assert_int_equal(count(m, edge), N + 4);
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 20 * PI / 180, edge), QC_OK);
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 20 * PI / 180, edge), QC_OK);
     assert_int_equal(count(m, edge), N + 4);
     assert_int_equal(warnings, 0);
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 40 * PI / 180, edge), QC_OK);
+    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 40 * PI / 180, edge), QC_OK);
     assert_int_equal(count(m, edge), N + 2);
     assert_int_equal(warnings, 1);
     free(edge);
