@@ -80,6 +80,7 @@ static qc_status features(const qc_run *run, const void *p) {
     if (!status) status = qc_features_create(run->ctx, mesh, edge, given->hard, &out);
     qc__free(edge);
     if (status) return status;
+    out->hard = given->hard && out->n_feature_edges > 0;
     out->bend = BEND * quad;
     char text[96];
     snprintf(text, sizeof text, "%d feature edges, %d corners", (int)out->n_feature_edges,

@@ -223,36 +223,44 @@ static int32_t find_path(const finder *f, const bridge *link, int32_t *v, int32_
     return n;
 }
 
-/* Follows the path from site a to site b. The form f_b - f_a in the chart of the first face,
- * i^-turn (f_b - T) - f_a, is left in the sum; *parts tells which parts of it are one. The path
- * must not lead along a feature. */
-static qc_status develop(finder *f, const bridge *link, qc__walk *walk, int32_t *path,
-                         int32_t ends[2], int32_t *parts) {
+/* Follows n edges from vertex `*v` to the last one, left in *v. The form f_b - f_a in the chart of
+ * the first face, i^-turn (f_b - T) - f_a, is left in the sum; *parts tells which parts of it are
+ * given, *way is the vector in the map. */
+static qc_status develop(finder *f, const int32_t *path, int32_t n, qc__walk *walk, int32_t *v,
+                         int32_t *parts, double _Complex *way) {
     const qc__seams *s = f->seams;
     const qc_mesh *mesh = s->mesh;
-    const int32_t n = find_path(f, link, &ends[0], path);
     walk->turn = walk->n = 0;
-    int32_t v = ends[0];
-    int32_t c = corner_in_face(mesh, mesh->edge_halfedge[2 * (int64_t)path[0]], v);
-    double _Complex way = 0;
+    int32_t c = corner_in_face(mesh, mesh->edge_halfedge[2 * (int64_t)path[0]], *v);
+    *way = 0;
     add_corner(f, c, 0, -1.0);
     *parts = given_parts(s, c, 0);
     for (int32_t i = 0; i < n; i++) {
         if (i > 0 && !turn_to_edge(f, walk, &c, path[i])) return QC_ERR_NOMEM;
-        v = other_end(mesh, path[i], v);
-        const int32_t to = corner_in_face(mesh, c, v);
-        way += qc__turn(qc__complex(f->map[to]) - qc__complex(f->map[c]), -walk->turn);
+        *v = other_end(mesh, path[i], *v);
+        const int32_t to = corner_in_face(mesh, c, *v);
+        *way += qc__turn(qc__complex(f->map[to]) - qc__complex(f->map[c]), -walk->turn);
         c = to;
     }
-    ends[1] = v;
     add_corner(f, c, -walk->turn, 1.0);
     for (int32_t i = 0; i < walk->n; i++)
         add_translation(f, walk->segment[i], -qc__turn(1.0, walk->term_turn[i] - walk->turn));
     *parts &= given_parts(s, c, walk->turn);
+    return QC_OK;
+}
+
+/* The path from site a to site b through a bridge; it must not lead along a feature unless both are
+ * points. */
+static qc_status develop_bridge(finder *f, const bridge *link, qc__walk *walk, int32_t *path,
+                                int32_t ends[2], int32_t *parts) {
+    double _Complex way = 0;
+    const int32_t n = find_path(f, link, &ends[0], path);
+    ends[1] = ends[0];
+    const qc_status status = develop(f, path, n, walk, &ends[1], parts, &way);
     if ((*parts == 1 && fabs(creal(way)) < least_slope * fabs(cimag(way))) ||
         (*parts == 2 && fabs(cimag(way)) < least_slope * fabs(creal(way))))
         *parts = 0;
-    return QC_OK;
+    return status;
 }
 
 /* Appends the parts of the sum, unless they vanish, and clears it. */
@@ -294,22 +302,86 @@ static qc_status make_pole_forms(finder *f, const int32_t *pole_index4, qc__sepa
     return status;
 }
 
-static qc_status make_forms(finder *f, qc__separation *s) {
-    const int64_t n = s->n + f->n_bridges + f->seams->n_poles;
+static qc_status reserve_forms(finder *f, qc__separation *s, int64_t n) {
     if (!qc__reserve(f->ctx, (void **)&s->vertex, &f->vertex_capacity, 2 * n + 1,
                      sizeof *s->vertex) ||
         !qc__reserve(f->ctx, (void **)&s->start, &f->start_capacity, n + 1, sizeof *s->start))
         return QC_ERR_NOMEM;
     if (s->n == 0) s->start[0] = 0;
+    return QC_OK;
+}
+
+static qc_status make_forms(finder *f, qc__separation *s) {
+    qc_status status = reserve_forms(f, s, s->n + f->n_bridges + f->seams->n_poles);
+    if (status != QC_OK) return status;
     int32_t *path = QC__NEW(f->ctx, int32_t, f->seams->mesh->n_vertices + 1);
     qc__walk walk = {0};
-    qc_status status = path ? QC_OK : QC_ERR_NOMEM;
+    status = path ? QC_OK : QC_ERR_NOMEM;
     for (int64_t i = 0; i < f->n_bridges && status == QC_OK; i++) {
         int32_t ends[2], parts = 0;
-        status = develop(f, &f->bridges[i], &walk, path, ends, &parts);
+        status = develop_bridge(f, &f->bridges[i], &walk, path, ends, &parts);
         if (status == QC_OK) status = store_form(f, s, ends, parts);
     }
     qc__walk_free(&walk);
+    qc__free(path);
+    return status;
+}
+
+/* --- along features --------------------------------------------------------------------------- */
+
+/* A feature edge at v which is not used; -1 = none. */
+static int32_t next_on_feature(const finder *f, const uint8_t *used, int32_t v) {
+    const qc_mesh *mesh = f->seams->mesh;
+    const int32_t first = mesh->vertex_corner[v];
+    for (int32_t c = first;;) {
+        const int32_t before = mesh->halfedge_edge[qc_prev(c)];
+        const int32_t after = mesh->halfedge_edge[qc_next(c)];
+        if (f->axis[before] >= 0 && !used[before]) return before;
+        if (f->axis[after] >= 0 && !used[after]) return after;
+        c = qc_corner_ccw(mesh, c);
+        if (c < 0 || c == first) return -1;
+    }
+}
+
+/* The piece of a feature which leaves v, up to the next point or back to v: kept when it is shorter
+ * than the reach, as points which follow each other on a feature may each be nearer to a third. */
+static qc_status separate_piece(finder *f, qc__separation *s, double reach, int32_t v,
+                                uint8_t *used, int32_t *path, qc__walk *walk) {
+    int32_t ends[2] = {v, v}, n = 0, parts = 0;
+    double length = 0;
+    double _Complex way = 0;
+    for (int32_t w = v, e; (e = next_on_feature(f, used, w)) >= 0;) {
+        used[e] = 1;
+        path[n++] = e;
+        length += edge_length(f->seams->mesh, e);
+        w = other_end(f->seams->mesh, e, w);
+        if (w == v || f->seams->vertex_cone[w] >= 0) break;
+    }
+    if (n == 0 || !(length < reach)) return QC_OK;
+    qc_status status = reserve_forms(f, s, s->n + 1);
+    if (status == QC_OK) status = develop(f, path, n, walk, &ends[1], &parts, &way);
+    return status == QC_OK ? store_form(f, s, ends, 3) : status;
+}
+
+/* Pieces between points, then closed features without any. */
+static qc_status separate_along(finder *f, qc__separation *s, double reach) {
+    const qc__seams *seams = f->seams;
+    const qc_mesh *mesh = seams->mesh;
+    uint8_t *used = QC__ZERO(f->ctx, uint8_t, mesh->n_edges);
+    int32_t *path = QC__NEW(f->ctx, int32_t, mesh->n_edges);
+    qc__walk walk = {0};
+    qc_status status = used && path ? QC_OK : QC_ERR_NOMEM;
+    for (int32_t i = 0; i < seams->n_cones && status == QC_OK; i++) {
+        const int32_t v = seams->cone_vertex[i];
+        while (status == QC_OK && next_on_feature(f, used, v) >= 0)
+            status = separate_piece(f, s, reach, v, used, path, &walk);
+    }
+    for (int32_t e = 0; e < mesh->n_edges && status == QC_OK; e++)
+        if (f->axis[e] >= 0 && !used[e])
+            status =
+                separate_piece(f, s, reach, mesh->edge_vertex[2 * (int64_t)e], used, path, &walk);
+    qc__walk_free(&walk);
+    qc__free(used);
     qc__free(path);
     return status;
 }
@@ -331,6 +403,8 @@ static qc_status find_pairs(finder *f, double reach, qc__separation *s) {
         if (status == QC_OK) status = find_bridges(f, reach, pass == 1 ? f->seams->n_cones : 0);
         if (status == QC_OK) status = make_forms(f, s);
     }
+    if (f->axis && status == QC_OK) status = separate_along(f, s, reach);
+    if (status == QC_OK) status = reserve_forms(f, s, s->n + f->seams->n_poles);
     return status;
 }
 

@@ -144,7 +144,7 @@ static inline qc_face_field *hard_field(qc_ctx *ctx, const qc_features *f) {
     assert_int_equal(qc_field_separate(ctx, mesh, 0.7 * quad, f->edge, trusted, x, NULL), QC_OK);
     check_along(ctx, mesh, f->edge, x);
     assert_int_equal(qc_face_field_create(ctx, mesh, x, weight, trusted, &out), QC_OK);
-    assert_int_equal(qc_face_field_set_aligned(ctx, out, f->edge), QC_OK);
+    assert_int_equal(qc_face_field_set_aligned(ctx, out, f->edge, 0), QC_OK);
     free(x);
     free(guide);
     free(weight);

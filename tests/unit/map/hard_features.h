@@ -104,7 +104,7 @@ static inline setting *aligned_setting(qc_ctx *ctx, const aligned_case *c, doubl
         along_axes(ctx, mesh, x);
     must(ctx, qc_field_align(ctx, mesh, edge, INFINITY, x, weight, trusted));
     must(ctx, qc_face_field_create(ctx, mesh, x, NULL, NULL, &field));
-    must(ctx, qc_face_field_set_aligned(ctx, field, edge));
+    must(ctx, qc_face_field_set_aligned(ctx, field, edge, 0));
     must(ctx, qc_matching_create(ctx, field, NULL, &matching));
     qc_object_release(field);
     free(edge);
