@@ -6,6 +6,8 @@
  * injective and has the features on isolines needs k >= 1. */
 #include "sector.h"
 
+#include <stdlib.h>
+
 /* The edge on the clockwise side of corner c, and on its counter-clockwise side. */
 static int32_t edge_before(const qc_mesh *mesh, int32_t c) {
     return mesh->halfedge_edge[qc_prev(c)];
@@ -81,16 +83,27 @@ static int32_t wanted_turns(const qc__sector *s) {
     return angle < 1 ? 1 : (int32_t)round(angle);
 }
 
-/* Corner before the edge of the sector where one more turn (step = 1 or -1) leaves the least angle;
- * -1 = all of them end on features. */
+/* Of a vertex on no feature: by how much one quarter more raises the size of its index. */
+static int32_t index_growth(const qc_mesh *mesh, const qc_complex *edge, const double *theta,
+                            int32_t v, int32_t step) {
+    if (qc_vertex_on_boundary(mesh, v)) return 0;
+    const int32_t index4 = (int32_t)round(qc__vertex_index4(mesh, edge, theta, v));
+    return abs(index4 + step) - abs(index4);
+}
+
+/* Corner before the edge of the sector where one more turn (step = 1 or -1) leaves the least angle,
+ * where cones may cancel rather than grow; -1 = all of them end on features. */
 static int32_t best_edge(const qc_mesh *mesh, const qc__sector *s, const uint8_t *hard,
-                         const double *theta, int32_t step) {
+                         const qc_complex *edge, const double *theta, int32_t step) {
     double least = INFINITY;
     int32_t best = -1;
     for (int32_t i = 0, c = s->first; i < s->n - 1; i++, c = qc_corner_ccw(mesh, c)) {
+        const int32_t end = mesh->face_vertex[qc_prev(c)];
+        if (hard[end]) continue;
         const double left =
-            fabs(direction(mesh, c) * theta[edge_after(mesh, c)] - step * QC__PI / 2);
-        if (hard[mesh->face_vertex[qc_prev(c)]] || !(left < least)) continue;
+            fabs(direction(mesh, c) * theta[edge_after(mesh, c)] - step * QC__PI / 2) +
+            QC__PI / 2 * index_growth(mesh, edge, theta, end, step);
+        if (!(left < least)) continue;
         least = left;
         best = c;
     }
@@ -98,10 +111,10 @@ static int32_t best_edge(const qc_mesh *mesh, const qc__sector *s, const uint8_t
 }
 
 static bool open_sector(const qc_mesh *mesh, const qc__sector *s, const uint8_t *hard,
-                        double *theta, int8_t *m) {
+                        const qc_complex *edge, double *theta, int8_t *m) {
     const int32_t change = wanted_turns(s) - s->turns, step = change > 0 ? 1 : -1;
     for (int32_t i = 0; i != change; i += step) {
-        const int32_t c = best_edge(mesh, s, hard, theta, step);
+        const int32_t c = best_edge(mesh, s, hard, edge, theta, step);
         if (c < 0) return false;
         const int32_t e = edge_after(mesh, c), turn = step * direction(mesh, c);
         theta[e] -= turn * QC__PI / 2;
@@ -124,7 +137,7 @@ qc_status qc__sectors_open(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *alig
         const qc__sector *s = &all.sector[i];
         if (wanted_turns(s) == s->turns) continue;
         if (changed) ++*changed;
-        if (!open_sector(mesh, s, hard, theta, m))
+        if (!open_sector(mesh, s, hard, edge, theta, m))
             status = qc__fail(ctx, QC_ERR_FAILED, s->vertex,
                               "two features meet at vertex %d in an angle which leaves no room "
                               "for a quad: split the mesh there (qc.split.features)",

@@ -6,7 +6,8 @@ shift 3
 set -- "$program" "$@"
 . "$here/../cli/common.sh"
 shift
-remesh="remesh in.obj --quads 600 --mode fast --progress none"
+# without hard features the choice of integers leaves a margin for another rounding of the sums
+remesh="remesh in.obj --quads 600 --mode fast --progress none --set features.hard=false"
 run 0 shape genus --genus 3 --resolution 2000 -o in.obj
 run 0 $remesh -o builtin.obj --stats builtin.json --set hodge.solver=builtin
 run 0 $remesh -o default.obj
