@@ -2,22 +2,26 @@
  * what a user set is as before afterwards. */
 #include "golden.h"
 
-static int calls, refusals;
+enum { MOST = 16 };
+static int calls, refusals, kept[MOST]; /* feature edges which are hard, by call */
 
 static qc_status refuse(const qc_run *run, const void *params) {
     (void)params;
+    const qc_features *features = run->input(run, "features");
+    if (calls < MOST) kept[calls] = features && features->hard ? features->n_feature_edges : 0;
     if (calls++ < refusals) return (run->fail)(run, QC_ERR_FAILED, -1, "not this map");
     return QC_OK;
 }
 
-static const qc_port in[] = {{"map", QC_TYPE_CORNER_MAP, 0, "any"}};
+static const qc_port in[] = {{"map", QC_TYPE_CORNER_MAP, 0, "any"},
+                             {"features", QC_TYPE_FEATURES, QC_PORT_OPTIONAL, "any"}};
 static const qc_stage picky = {QC_STAGE_SIZES,   .id = "org.test.picky",
                                .version = "1.0", .brief = "refuses the first maps",
                                .doc = "",        .cite = "",
-                               .in = in,         .n_in = 1,
+                               .in = in,         .n_in = 2,
                                .run = refuse};
 
-static qc_status run_with_refusals(int count, const char **seed) {
+static qc_status run_with_refusals(const char *name, int count, const char **seed) {
     qc_ctx *ctx = golden_context(1);
     qc_shape_options shape = QC_SHAPE_OPTIONS_INIT;
     qc_default_pipeline_options options = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
@@ -28,7 +32,7 @@ static qc_status run_with_refusals(int count, const char **seed) {
     static char text[32];
     shape.resolution = 500;
     options.quads = 300;
-    assert_int_equal(qc_shape_create(ctx, "sphere", &shape, &mesh), QC_OK);
+    assert_int_equal(qc_shape_create(ctx, name, &shape, &mesh), QC_OK);
     qc_polygon_mesh *soup = golden_soup(ctx, mesh);
     assert_int_equal(qc_registry_create(ctx, &registry), QC_OK);
     assert_int_equal(qc_registry_add(registry, &picky), QC_OK);
@@ -55,9 +59,9 @@ static qc_status run_with_refusals(int count, const char **seed) {
 static void other_integers_are_tried(void **state) {
     (void)state;
     const char *seed;
-    assert_int_equal(run_with_refusals(0, &seed), QC_OK);
+    assert_int_equal(run_with_refusals("sphere", 0, &seed), QC_OK);
     assert_int_equal(calls, 1);
-    assert_int_equal(run_with_refusals(2, &seed), QC_OK);
+    assert_int_equal(run_with_refusals("sphere", 2, &seed), QC_OK);
     assert_int_equal(calls, 3);
     assert_string_equal(seed, "7");
 }
@@ -65,15 +69,33 @@ static void other_integers_are_tried(void **state) {
 static void attempts_end(void **state) {
     (void)state;
     const char *seed;
-    assert_int_equal(run_with_refusals(1000, &seed), QC_ERR_FAILED);
+    assert_int_equal(run_with_refusals("sphere", 1000, &seed), QC_ERR_FAILED);
     assert_in_range(calls, 2, 13);
     assert_string_equal(seed, "7");
+}
+
+/* The features of a cube go step by step, not all at once. */
+static void features_are_given_up_step_by_step(void **state) {
+    (void)state;
+    const char *seed;
+    int steps = 0;
+    assert_int_equal(run_with_refusals("cube", 1000, &seed), QC_ERR_FAILED);
+    assert_in_range(calls, 6, MOST);
+    for (int i = 1; i < calls; i++) {
+        assert_true(kept[i] <= kept[i - 1]);
+        steps += kept[i] < kept[i - 1];
+    }
+    assert_true(kept[0] > 0 && kept[calls - 1] == 0);
+    assert_in_range(steps, 4, MOST);
+    assert_int_equal(run_with_refusals("cube", 3, &seed), QC_OK);
+    assert_true(kept[3] > kept[0] / 2 && kept[3] < kept[0]);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_integers_are_tried),
         cmocka_unit_test(attempts_end),
+        cmocka_unit_test(features_are_given_up_step_by_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

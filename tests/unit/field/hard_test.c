@@ -292,6 +292,64 @@ static void failed_allocations_leave_nothing(void **state) {
     qc_object_release(mesh);
 }
 
+/* Sectors of each kind on a plane of 30 x 30 unit squares with one path of n edges in directions
+ * 0..3 (right, up, left, down): how many want k quarter turns. */
+static void count_corners(qc_ctx *ctx, int x, int y, int n, const int *way, double bend,
+                          int count[5]) {
+    enum { N = 30 };
+    static const int dx[] = {1, 0, -1, 0}, dy[] = {0, 1, 0, -1};
+    double p[3 * (N + 1) * (N + 1)] = {0};
+    int32_t t[6 * N * N];
+    for (int i = 0; i < (N + 1) * (N + 1); i++) p[3 * i] = i % (N + 1), p[3 * i + 1] = i / (N + 1);
+    for (int i = 0; i < N * N; i++) {
+        const int32_t a = i / N * (N + 1) + i % N;
+        const int32_t face[6] = {a, a + 1, a + N + 2, a, a + N + 2, a + N + 1};
+        memcpy(t + 6 * i, face, sizeof face);
+    }
+    qc_mesh *mesh = NULL;
+    assert_int_equal(qc_mesh_create(ctx, (N + 1) * (N + 1), p, 2 * N * N, t, &mesh), QC_OK);
+    uint8_t *edge = calloc((size_t)mesh->n_edges, 1);
+    double *theta = calloc((size_t)mesh->n_edges, sizeof *theta);
+    qc_complex *tangent = malloc(3 * (size_t)mesh->n_faces * sizeof *tangent);
+    for (int i = 0; i < n; i++) {
+        const int32_t a = y * (N + 1) + x, b = a + dy[way[i]] * (N + 1) + dx[way[i]];
+        for (int32_t e = 0; e < mesh->n_edges; e++)
+            edge[e] |= (mesh->edge_vertex[2 * e] == a && mesh->edge_vertex[2 * e + 1] == b) ||
+                       (mesh->edge_vertex[2 * e] == b && mesh->edge_vertex[2 * e + 1] == a);
+        x += dx[way[i]];
+        y += dy[way[i]];
+    }
+    qc__sectors all = {0, NULL};
+    assert_int_equal(qc_tangent_edges(ctx, mesh, tangent), QC_OK);
+    assert_int_equal(qc__sectors_create(ctx, mesh, edge, tangent, theta, &all), QC_OK);
+    assert_int_equal(all.n, 2 * n);
+    assert_int_equal(qc__sectors_find_corners(ctx, mesh, tangent, bend, &all), QC_OK);
+    for (int k = 0; k < 5; k++) count[k] = 0;
+    for (int32_t i = 0; i < all.n; i++) {
+        assert_in_range(all.sector[i].wanted, 1, 4);
+        count[all.sector[i].wanted]++;
+    }
+    qc__sectors_free(&all);
+    free(edge);
+    free(theta);
+    free(tangent);
+    qc_object_release(mesh);
+}
+
+/* Stairs of single edges are straight when seen over four, a bend has one corner on either side;
+ * both free ends have four quarters. */
+static void corners_follow_the_direction(void **state) {
+    int stairs[18], bent[20], count[5];
+    for (int i = 0; i < 18; i++) stairs[i] = i % 2;
+    count_corners(*state, 5, 5, 18, stairs, 0.5, count);
+    assert_true(count[1] == 17 && count[3] == 17 && count[4] == 2);
+    count_corners(*state, 5, 5, 18, stairs, 4, count);
+    assert_true(count[1] == 0 && count[2] == 34 && count[3] == 0 && count[4] == 2);
+    for (int i = 0; i < 20; i++) bent[i] = i >= 10;
+    count_corners(*state, 5, 5, 20, bent, 4, count);
+    assert_true(count[1] == 1 && count[2] == 36 && count[3] == 1 && count[4] == 2);
+}
+
 /* A plane with a field along its sides, but for 5 degrees: all features stay and the crosses beside
  * them are turned; at 30 degrees none stays. */
 static void given_fields_follow_what_they_agree_with(void **state) {
@@ -328,6 +386,7 @@ int main(void) {
         cmocka_unit_test(meshes_get_room),
         cmocka_unit_test(spikes_get_more_edges),
         cmocka_unit_test(only_hard_features_split),
+        cmocka_unit_test(corners_follow_the_direction),
         cmocka_unit_test(crosses_stay_on_features),
         cmocka_unit_test(branch_points_move_elsewhere),
         cmocka_unit_test(sharp_tips_get_a_quarter_turn),

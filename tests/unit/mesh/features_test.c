@@ -208,12 +208,82 @@ static void test_sharp_features(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* A plane of 24 x 24 unit squares, its vertices up to rough / 2 off, folded along its middle. */
+static qc_mesh *rough_plane(qc_ctx *ctx, double rough, double fold) {
+    enum { N = 24 };
+    double p[3 * (N + 1) * (N + 1)];
+    int32_t t[6 * N * N];
+    uint32_t random = 1;
+    for (int i = 0; i < (N + 1) * (N + 1); i++) {
+        random = random * 1664525u + 1013904223u;
+        const double noise = rough * ((random >> 8) / 16777216.0 - 0.5);
+        p[3 * i] = cos(fold / 2) * (i % (N + 1) - N / 2);
+        p[3 * i + 1] = i / (N + 1);
+        p[3 * i + 2] = sin(fold / 2) * abs(i % (N + 1) - N / 2) + noise;
+    }
+    for (int i = 0; i < N * N; i++) {
+        const int32_t a = i / N * (N + 1) + i % N;
+        const int32_t face[6] = {a, a + 1, a + N + 2, a, a + N + 2, a + N + 1};
+        memcpy(t + 6 * i, face, sizeof face);
+    }
+    qc_mesh *m = NULL;
+    assert_int_equal(qc_mesh_create(ctx, (N + 1) * (N + 1), p, 2 * N * N, t, &m), QC_OK);
+    return m;
+}
+
+/* Roughness has hundreds of sharp edges and no crease when seen from three edges away; a fold of 80
+ * degrees in half of it stays, alone. */
+static void test_scale(void **state) {
+    qc_ctx *ctx = *state;
+    const double degree = PI / 180;
+    for (int folded = 0; folded < 2; folded++) {
+        qc_mesh *m = rough_plane(ctx, folded ? 0.35 : 0.7, folded * 80 * degree);
+        qc_features *f = NULL;
+        assert_int_equal(qc_features_detect(ctx, m, 35 * degree, 0, NULL, &f), QC_OK);
+        uint8_t *edge = malloc((size_t)m->n_edges);
+        memcpy(edge, f->edge, (size_t)m->n_edges);
+        assert_true(f->n_creases > (folded ? 20 : 200));
+        assert_int_equal(qc_features_prune(ctx, m, 20 * degree, 1.5, 30 * degree, 4, 0, edge),
+                         QC_OK);
+        int32_t kept = 0, along = 0;
+        for (int32_t e = 0; e < m->n_edges; e++) {
+            if (edge[e] != QC_FEATURE_CREASE) continue;
+            kept++;
+            along += m->edge_vertex[2 * e] % 25 == 12 && m->edge_vertex[2 * e + 1] % 25 == 12;
+        }
+        print_message("fold %d: %d creases, %d kept, %d along the fold\n", folded,
+                      (int)f->n_creases, (int)kept, (int)along);
+        assert_true(kept == along && (folded ? along == 24 : along == 0));
+        free(edge);
+        qc_object_release(f);
+        qc_object_release(m);
+    }
+}
+
+/* Chains of a cube measured: twelve of 90 degrees. */
+static void test_chains(void **state) {
+    qc_ctx *ctx = *state;
+    qc_mesh *m = voxels(ctx, 2, 2, 2, "########", 1);
+    qc_features *f = NULL;
+    qc_feature_chain chain[12];
+    assert_int_equal(qc_features_detect(ctx, m, 0.6, 0, NULL, &f), QC_OK);
+    assert_int_equal(qc_features_measure_chains(ctx, m, f->edge, chain), QC_OK);
+    for (int i = 0; i < 12; i++) {
+        assert_int_equal(chain[i].n_edges, 2);
+        assert_int_equal(chain[i].kinds, QC_FEATURE_CREASE);
+        assert_true(fabs(chain[i].angle - PI / 2) < 1e-12 && chain[i].end[0] != chain[i].end[1]);
+    }
+    qc_object_release(f);
+    qc_object_release(m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cube),           cmocka_unit_test(test_boundary_and_lines),
         cmocka_unit_test(test_strokes),        cmocka_unit_test(test_groups),
         cmocka_unit_test(test_prune),          cmocka_unit_test(test_zigzag),
-        cmocka_unit_test(test_sharp_features),
+        cmocka_unit_test(test_sharp_features), cmocka_unit_test(test_scale),
+        cmocka_unit_test(test_chains),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
