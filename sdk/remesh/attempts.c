@@ -1,8 +1,8 @@
-/* The ladder of attempts on one component. Where a map folds over, the steps run again: with other
- * integers, since rounding has many nearly equal answers and which of them unfold cannot be told
- * before the map is cut into quads; with fewer hard features, since some contradict each other or
- * lie too close; and in the end without the condition that features lie on isolines, with more
- * quads, since where quads are too large for the distances between singularities none does. */
+/* The ladder of attempts on one component. Where a map folds over, the steps run again: with
+ * integers from quantization and its refined mesh, where no map folds over, or with other ones
+ * where that is not possible; with more quads, since where they are too large for the distances
+ * between singularities they meet themselves; with fewer hard features, since some contradict each
+ * other or lie too close; and in the end without the condition that features lie on isolines. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,9 +18,9 @@ typedef struct rung {
 } rung;
 
 static const rung ladder[] = {
-    {0, 0, ALL},       {1, 0, ALL},        {0, 0, LESS_ONE}, {0, 0, LESS_ONE}, {0, 0, LESS_QUARTER},
-    {0, 0, LESS_HALF}, {0, 0, BOUNDARIES}, {0, 0, GUIDES},   {1, 0, GUIDES},   {0, 1, GUIDES},
-    {0, 2, GUIDES},    {0, 3, GUIDES},     {0, 4, GUIDES},   {0, 6, GUIDES},
+    {0, 0, ALL},          {1, 0, ALL},       {0, 1, ALL},        {0, 0, LESS_ONE}, {0, 0, LESS_ONE},
+    {0, 0, LESS_QUARTER}, {0, 0, LESS_HALF}, {0, 0, BOUNDARIES}, {0, 0, GUIDES},   {1, 0, GUIDES},
+    {0, 1, GUIDES},       {0, 2, GUIDES},    {0, 4, GUIDES},     {0, 6, GUIDES},
 };
 enum { RUNGS = (int)(sizeof ladder / sizeof *ladder) };
 
@@ -32,6 +32,7 @@ typedef struct climb {
     int64_t round, features; /* steps, -1 = none */
     uint64_t seed;           /* what the user set */
     double refine;
+    char quantize[16];
     bool hard;
     qc__concessions given_up;
 } climb;
@@ -65,6 +66,8 @@ static qc_status read_settings(climb *c) {
     c->seed = text ? strtoull(text, NULL, 10) : 0;
     text = qc_pipeline_get(c->pipeline, name_of(c, c->round), "refine");
     c->refine = text ? qc__parse_double(text, NULL) : 1;
+    text = qc_pipeline_get(c->pipeline, name_of(c, c->round), "quantize");
+    snprintf(c->quantize, sizeof c->quantize, "%s", text ? text : "never");
     return c->features < 0 ? QC_OK : find_features(c);
 }
 
@@ -79,6 +82,12 @@ static qc_status put_features(const climb *c) {
     return status;
 }
 
+/* Whether an attempt is one where the integers of the user's own settings have failed. */
+static bool wants_imprint(const climb *c, rung r) {
+    const bool own = r.other == 0 && r.finer == 0 && (r.keep == ALL || r.keep == GUIDES);
+    return !own && strcmp(c->quantize, "never") != 0;
+}
+
 /* Parameters of an attempt; {0, 0, ALL} are those the user set. */
 static qc_status set_rung(const climb *c, rung r) {
     const char *step = name_of(c, c->round);
@@ -86,6 +95,9 @@ static qc_status set_rung(const climb *c, rung r) {
     qc__print_double(refine, sizeof refine, c->refine * pow(2, 0.5 * r.finer));
     qc_status status = qc__set_seed(c->pipeline, step, c->seed + (uint64_t)r.other);
     if (status == QC_OK) status = qc_pipeline_set(c->pipeline, step, "refine", refine);
+    if (status == QC_OK)
+        status = qc_pipeline_set(c->pipeline, step, "quantize",
+                                 wants_imprint(c, r) ? "imprint" : c->quantize);
     if (status != QC_OK || !c->hard) return status;
     return qc_pipeline_set(c->pipeline, name_of(c, c->features), "hard",
                            r.keep == GUIDES ? "false" : "true");

@@ -95,7 +95,7 @@ enum {
 enum {
     QC_QUANTIZE_NEVER = 0,
     QC_QUANTIZE_WHERE_NEEDED =
-        1, /* where rounding parts no cones and features, or winds many wrong */
+        1, /* where rounding parts no cones and features, or winds some wrong */
     QC_QUANTIZE_ALWAYS = 2,
     QC_QUANTIZE_IMPRINT = 3 /* always, and the map comes on a refined mesh, where it is injective */
 };

@@ -86,7 +86,7 @@ qc_status qc__round_meet(qc__rounding *r) {
     if (status != QC_OK || quantized) return status;
     status = meet_density(r);
     if (status == QC_OK && r->options.quantize == QC_QUANTIZE_WHERE_NEEDED && !r->options.trial &&
-        is_hopeless(r))
+        (r->best_collisions > 0 || r->best_wrong > 0))
         status = qc__round_quantized(r, &quantized);
     if (quantized) return status;
     const int32_t pairs = r->best_collisions, wrong = r->best_wrong;

@@ -139,14 +139,34 @@ static qc_status blend_imprint(quantizing *q) {
     return status;
 }
 
+/* Vertices of boundaries which are no features stay in the coarse complex, so their edges take at
+ * least a unit each: whether they are that long on average at this scale. */
+static bool fits_boundary(const quantizing *q, double scale) {
+    const qc__rounding *r = q->r;
+    double length = 0;
+    int32_t n = 0;
+    for (int32_t h = 0; h < 3 * r->mesh->n_faces; h++) {
+        const int32_t e = r->mesh->halfedge_edge[h];
+        if (r->mesh->twin[h] >= 0 || (r->seamless->matching->axis && q->axis[e] >= 0)) continue;
+        const qc_complex a = r->f[qc_next(h)], b = r->f[qc_prev(h)];
+        length += scale * hypot(b.re - a.re, b.im - a.im);
+        n++;
+    }
+    return n <= length;
+}
+
 static qc_status quantize(quantizing *q, bool *done) {
     qc__rounding *r = q->r;
     const double sized = r->options.refine * r->seamless->sizing->target_quads;
     const double area = qc__round_area(r->f, r->mesh->n_faces);
     const double scale = sized > 0 ? sqrt(sized / area) : sqrt(r->options.refine);
+    qc__round_charts(r, q->rotation, q->axis);
+    if (!fits_boundary(q, scale)) {
+        qc__log(r->ctx, QC_LOG_INFO, "no quantization: edges of the open boundary are too short");
+        return QC_OK;
+    }
     qc_status status = make_exact(q);
     mark_points(q);
-    qc__round_charts(r, q->rotation, q->axis);
     const int8_t *axis = r->seamless->matching->axis ? q->axis : NULL;
     const qc__exact_map map = {r->mesh, q->uv, q->bits, q->rotation, axis, q->point};
     const bool imprint = r->options.quantize == QC_QUANTIZE_IMPRINT;

@@ -15,6 +15,7 @@ static qc_corner_map *rounded(const setting *s, int32_t lattice) {
     qc_round_options options = QC_ROUND_OPTIONS_INIT;
     qc_corner_map *map = NULL;
     options.lattice = lattice;
+    options.quantize = QC_QUANTIZE_NEVER;
     must(s->ctx, qc_map_round(s->ctx, s->map, &options, &map));
     return map;
 }
