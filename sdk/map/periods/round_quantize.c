@@ -9,7 +9,8 @@
 #include "sdk/map/periods/wrong_cones.h"
 
 static const double read_tolerance = 1e-3; /* of the integers read from the values */
-static const double noteworthy = 0.1;      /* more quads than asked for */
+static const double noteworthy = 0.1;      /* more quads than asked for ... */
+static const double most_times = 8;        /* ... and too many of them */
 
 typedef struct quantizing {
     qc__rounding *r;
@@ -139,8 +140,8 @@ static qc_status blend_imprint(quantizing *q) {
     return status;
 }
 
-/* Vertices of boundaries which are no features stay in the coarse complex, so their edges take at
- * least a unit each: whether they are that long on average at this scale. */
+/* Vertices of boundaries which are no features stay in the coarse complex, so their edges take
+ * about a unit each: whether they are not much shorter on average at this scale. */
 static bool fits_boundary(const quantizing *q, double scale) {
     const qc__rounding *r = q->r;
     double length = 0;
@@ -152,7 +153,7 @@ static bool fits_boundary(const quantizing *q, double scale) {
         length += scale * hypot(b.re - a.re, b.im - a.im);
         n++;
     }
-    return n <= length;
+    return n <= most_times * length;
 }
 
 static qc_status quantize(quantizing *q, bool *done) {
@@ -177,6 +178,11 @@ static qc_status quantize(quantizing *q, bool *done) {
     if (status == QC_ERR_FAILED) {
         qc__log(r->ctx, QC_LOG_INFO, "no quantization: %s", qc_ctx_error(r->ctx)->text);
         qc__clear_error(r->ctx);
+        return QC_OK;
+    }
+    if (status == QC_OK && sized > 0 && made > most_times * sized) {
+        qc__log(r->ctx, QC_LOG_INFO, "no quantization: it would take %.0f quads", made);
+        qc__imprint_free(&r->imprint);
         return QC_OK;
     }
     if (status == QC_OK) status = read_integers(q);
