@@ -41,6 +41,7 @@ typedef struct imprinter {
     node *node;
     piece *piece;
     int64_t n_nodes, node_capacity, n_pieces, piece_capacity;
+    bool short_of_memory;
     int32_t face; /* whose boundary is walked */
     qc__face_walk walk;
     qc__cursor cursor;
@@ -133,16 +134,21 @@ static void find_crossings(imprinter *q) {
 static bool push_node(imprinter *q, const node *n) {
     const piece *last = &q->piece[q->n_pieces - 1];
     if (q->n_nodes > last->start && q->node[q->n_nodes - 1].vertex == n->vertex) return true;
-    if (!qc__reserve(q->ctx, (void **)&q->node, &q->node_capacity, q->n_nodes + 1, sizeof *q->node))
+    if (!qc__reserve(q->ctx, (void **)&q->node, &q->node_capacity, q->n_nodes + 1,
+                     sizeof *q->node)) {
+        q->short_of_memory = true;
         return false;
+    }
     q->node[q->n_nodes++] = *n;
     return true;
 }
 
 static bool open_piece(imprinter *q, int32_t way_back) {
     if (!qc__reserve(q->ctx, (void **)&q->piece, &q->piece_capacity, q->n_pieces + 1,
-                     sizeof *q->piece))
+                     sizeof *q->piece)) {
+        q->short_of_memory = true;
         return false;
+    }
     q->piece[q->n_pieces++] = (piece){(int32_t)q->n_nodes, way_back};
     return true;
 }
@@ -327,6 +333,7 @@ static qc_status cut_faces(imprinter *q) {
         if (t % 4096 == 0 && !qc__progress(q->ctx, (double)t / q->map->mesh->n_faces))
             return QC_ERR_CANCELLED;
         if (cut_face(q, t)) continue;
+        if (q->short_of_memory) return QC_ERR_NOMEM;
         return qc__fail(q->ctx, QC_ERR_FAILED, t, "face %d is not cut along chords", (int)t);
     }
     return QC_OK;
@@ -373,8 +380,8 @@ qc_status qc__imprint_create(qc_ctx *ctx, const qc__exact_map *map, const qc__co
     if (status == QC_OK) status = cut_faces(&q);
     if (status == QC_OK) status = publish(&q, out);
     qc__refiner_free(&q.refiner);
-    void *const blocks[] = {q.edge_start, q.share, q.vertex, q.place,
-                            q.edge,       q.uv,    q.node,   q.piece};
+    void *const blocks[] = {q.edge_start, q.share,  q.vertex, q.place, q.edge,
+                            q.uv,         q.weight, q.node,   q.piece};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

@@ -3,7 +3,7 @@
  * those of the map itself give the map back. */
 #include "tests/unit/map/exact_maps.h"
 
-#include <qc/shape.h>
+#include "unit/mesh/failing_allocator.h"
 
 enum { N_MAPS = 150 };
 
@@ -222,10 +222,36 @@ static void values_are_integer_seamless(void **state) {
     qc_ctx_free(ctx);
 }
 
+static qc_status quantize_and_free(qc_ctx *ctx, const void *data) {
+    const exact_case *e = data;
+    double made, *uv = malloc(sizeof *uv * 6 * (size_t)e->map.mesh->n_faces);
+    qc__imprint imprint = {0};
+    const qc_status status = qc__quantize(ctx, &e->map, 0.7, 0, uv, &made, &imprint);
+    assert_true((status == QC_OK) == (imprint.mesh != NULL));
+    qc__imprint_free(&imprint);
+    free(uv);
+    return status;
+}
+
+static void allocations_may_fail(void **state) {
+    (void)state;
+    qc_ctx *ctx = maps_context();
+    maps_rng r = {11};
+    for (int cases = 0; cases < 3;) {
+        exact_case e;
+        if (!random_case(ctx, &r, &e)) continue;
+        fail_every_allocation(quantize_and_free, &e);
+        exact_free(&e);
+        cases++;
+    }
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(complexes_of_random_maps),
         cmocka_unit_test(values_are_integer_seamless),
+        cmocka_unit_test(allocations_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
