@@ -241,9 +241,9 @@ static void cut_corners(network *w) {
 
 /* --- pruning ---------------------------------------------------------------------------------- */
 
-/* Chains of creases along which the surface does not bend by `angle` on average, as measured at the
+/* Chains of creases along which the surface does not bend by `blunt` on average, as measured at the
  * scale of half a quad, once in so much of their length. */
-static qc_status mark_blunt(qc_ctx *ctx, network *w, double half, double angle) {
+static qc_status mark_blunt(qc_ctx *ctx, network *w, double half, double blunt) {
     qc__crease_scale *scale = NULL;
     const qc_status status = qc__crease_scale_create(ctx, w->mesh, half, &scale);
     for (int32_t i = 0; status == QC_OK && i < w->n; i++) {
@@ -260,7 +260,7 @@ static qc_status mark_blunt(qc_ctx *ctx, network *w, double half, double angle) 
             total += w->length[e];
             sum += w->length[e] * bend;
         }
-        c->drop = sum < angle * total;
+        c->drop = sum < blunt * total;
     }
     qc__crease_scale_free(scale);
     return status;
@@ -338,11 +338,11 @@ static int32_t drop_marked(network *w) {
     return dropped;
 }
 
-static qc_status prune(qc_ctx *ctx, network *w, double half, double angle, double least,
+static qc_status prune(qc_ctx *ctx, network *w, double half, double blunt, double least,
                        double sharp) {
     int32_t dropped = 1, noise = 0;
     find_chains(w);
-    qc_status status = mark_blunt(ctx, w, half, angle);
+    qc_status status = mark_blunt(ctx, w, half, blunt);
     if (status != QC_OK) return status;
     noise += drop_marked(w);
     while (dropped > 0) {
@@ -364,12 +364,12 @@ static qc_status prune(qc_ctx *ctx, network *w, double half, double angle, doubl
 }
 
 qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double half,
-                            double angle, double least, double sharp, uint8_t *edge) {
+                            double blunt, double least, double sharp, uint8_t *edge) {
     network w;
     qc_status status = network_create(ctx, mesh, edge, &w);
     if (status == QC_OK) status = close_gaps(ctx, &w, weak);
     if (status == QC_OK) cut_corners(&w);
-    if (status == QC_OK) status = prune(ctx, &w, half, angle, least, sharp);
+    if (status == QC_OK) status = prune(ctx, &w, half, blunt, least, sharp);
     for (int32_t e = 0; status == QC_OK && e < mesh->n_edges; e++) edge[e] = w.edge[e];
     network_free(&w);
     return status;

@@ -306,13 +306,15 @@ QC_API qc_status qc_features_measure_chains(qc_ctx *ctx, const qc_mesh *mesh, co
                                             qc_feature_chain *out);
 /* Closes gaps of creases along edges of dihedral angle above `weak` (radians) which lead on from a
  * free end to another feature, lets creases which take two sides of a face at an angle below 75
- * degrees take the third, then drops creases with a free end shorter than `least` (units of
- * the mesh; closed ones shorter than twice that), then of two features which meet in less than
- * `sharp` (radians) the weaker one, each named by a warning with the numbers of the input: creases
- * by their mean angle, then groups and strokes; the boundary stays. Repeats until nothing changes.
- */
+ * degrees take the third; then drops chains of creases at which the surface, seen from `half`
+ * (units of the mesh, half a quad; three edges at least) on either side, bends by less than `blunt`
+ * (radians) on average (docs/theory/features.md, K.0), creases with a free end shorter than `least`
+ * (units of the mesh; closed ones shorter than twice that), then of two features which meet in less
+ * than `sharp` (radians) the weaker one, each named by a warning with the numbers of the input:
+ * creases by their mean angle, then groups and strokes; the boundary stays. The last two repeat
+ * until nothing changes. Errors: NOMEM, CANCELLED. */
 QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double half,
-                                   double angle, double least, double sharp, uint8_t *edge);
+                                   double blunt, double least, double sharp, uint8_t *edge);
 
 /* --- mirror symmetry -------------------------------------------------------------------------- */
 
