@@ -7,6 +7,7 @@
 #include "crowd.h"
 #include "region.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -240,6 +241,40 @@ static int32_t report(qc_ctx *ctx, const separator *s) {
     return left;
 }
 
+static qc_status thin_out(qc_ctx *ctx, separator *s, uint8_t *trusted) {
+    qc_status status = QC_OK;
+    for (int i = 0; !status && i < WAYS * LEVELS && mark_crowds(s, i / WAYS); i++) {
+        status = try_region(ctx, s, i % WAYS, trusted);
+        if (!status && !qc__progress(ctx, 0.8 * (i + 1) / (WAYS * LEVELS)))
+            status = QC_ERR_CANCELLED;
+    }
+    return status;
+}
+
+/* Length of a path between the singularities of a torus which has two of them, 1/4 and -1/4, and so
+ * no quad mesh (Izmestiev, Kusner, Rote, Springborn, Sullivan 2013); otherwise 0. */
+static double lone_pair(separator *s) {
+    const qc_mesh *mesh = s->mesh;
+    int32_t n = 0, p = -1, q;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        if (s->index4[v] == 0) continue;
+        n++;
+        if (s->index4[v] == 1) p = v;
+    }
+    if (n != 2 || p < 0 || mesh->euler != 0 || mesh->n_boundary_edges > 0 ||
+        mesh->n_components != 1)
+        return 0;
+    double length = 0;
+    const int32_t n_path = qc__crowd_path(&s->crowd, p, 0.5 * DBL_MAX, &q);
+    for (int32_t i = 0; i < n_path; i++) {
+        const int32_t *end = mesh->edge_vertex + 2 * (int64_t)s->crowd.ball[i];
+        double d[3];
+        qc__sub(mesh->position + 3 * (size_t)end[0], mesh->position + 3 * (size_t)end[1], d);
+        length += sqrt(qc__dot3(d, d));
+    }
+    return length;
+}
+
 qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
                             const uint8_t *aligned, uint8_t *trusted, qc_complex *x,
                             int32_t *left) {
@@ -251,10 +286,12 @@ qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
     uint8_t *kept = trusted ? QC__NEW(ctx, uint8_t, F) : NULL;
     qc_status status = kept || !trusted ? prepare(ctx, &s, aligned, x) : QC_ERR_NOMEM;
     if (!status && kept) memcpy(kept, trusted, F);
-    for (int i = 0; !status && i < WAYS * LEVELS && mark_crowds(&s, i / WAYS); i++) {
-        status = try_region(ctx, &s, i % WAYS, kept);
-        if (!status && !qc__progress(ctx, (i + 1.0) / (WAYS * LEVELS))) status = QC_ERR_CANCELLED;
-    }
+    if (!status) status = thin_out(ctx, &s, kept);
+    if (!status && !qc__progress(ctx, 0.8)) status = QC_ERR_CANCELLED;
+    s.distance = 0; /* pairs do not count where they stand in the way of an index */
+    if (!status) status = thin_out(ctx, &s, kept);
+    s.distance = status ? 0 : 1.01 * lone_pair(&s);
+    if (!status && s.distance > 0) status = thin_out(ctx, &s, kept);
     if (!status) {
         int32_t n = report(ctx, &s);
         if (left) *left = n;

@@ -174,10 +174,11 @@ QC_API qc_status qc_field_smoothest(qc_ctx *ctx, const qc_mesh *mesh, const doub
 /* Solves again without alignment around crowded vertices: those of index4 >= 2 or <= -3, and
  * opposite singularities nearer than `distance` (units of the mesh; 0 = none) or, within twice
  * that, on one edge. Region by region a result is kept when it is less crowded; its faces lose
- * their flag in trusted (n_faces, in and out, may be NULL). Vertices whose index stays are named by
- * a warning; *left (may be NULL) counts them. Faces beside hard features (aligned: n_edges flags,
- * may be NULL) stay, and the vertices on these do not count. x in place. Errors: ARGUMENT, NOMEM,
- * CANCELLED. */
+ * their flag in trusted (n_faces, in and out, may be NULL). Then indices which stayed are shared
+ * at the price of such pairs, and a pair of 1/4 and -1/4 which is alone on a torus cancels.
+ * Vertices whose index stays are named by a warning; *left (may be NULL) counts them. Faces beside
+ * hard features (aligned: n_edges flags, may be NULL) stay, and the vertices on these do not count.
+ * x in place. Errors: ARGUMENT, NOMEM, CANCELLED. */
 QC_API qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
                                    const uint8_t *aligned, uint8_t *trusted, qc_complex *x,
                                    int32_t *left);

@@ -205,8 +205,75 @@ static void crowded_indices_are_shared(void **state) {
     qc_object_release(mesh);
 }
 
+/* The lines of latitude of a torus, turned by a dipole: one vertex of index 1/4 and one of -1/4, of
+ * which no quad mesh exists; both go, however far apart they are. */
+static void lone_pairs_on_a_torus_cancel(void **state) {
+    enum { N = 40, M = 20 };
+    qc_ctx *ctx = *state;
+    qc_mesh *mesh = grid(ctx, TORUS, N, M, 1);
+    qc_complex *edge = malloc(sizeof *edge * 3 * (size_t)mesh->n_faces);
+    qc_complex *x = malloc(sizeof *x * (size_t)mesh->n_faces);
+    assert_int_equal(qc_tangent_edges(ctx, mesh, edge), QC_OK);
+    for (int32_t t = 0; t < mesh->n_faces; t++) {
+        const int32_t *v = mesh->face_vertex + 3 * t;
+        double column = 0, row = 0, along = 0;
+        for (int32_t k = 0; k < 3; k++) { /* the centre, and the edge within a row */
+            int32_t from = v[(k + 1) % 3], to = v[(k + 2) % 3];
+            column += (from / M - v[0] / M + 3 * N / 2) % N - N / 2 + v[0] / M;
+            row += (from % M - v[0] % M + 3 * M / 2) % M - M / 2 + v[0] % M;
+            if (from % M != to % M) continue;
+            along = atan2(edge[3 * t + k].im, edge[3 * t + k].re);
+            if ((to / M - from / M + N) % N != 1) along += PI;
+        }
+        double y = row / 3 - 10.1;
+        double turn = (atan2(y, column / 3 - 15.2) - atan2(y, column / 3 - 24.7)) / 4;
+        x[t] = (qc_complex){cos(along + turn), sin(along + turn)};
+    }
+    qc_matching *before = match(ctx, mesh, x);
+    assert_int_equal(before->n_singular, 2);
+    assert_int_equal(qc_field_separate(ctx, mesh, 0.1, NULL, NULL, x, NULL), QC_OK);
+    qc_matching *after = match(ctx, mesh, x);
+    assert_int_equal(after->n_singular, 0);
+    qc_object_release(before);
+    qc_object_release(after);
+    qc_object_release(mesh);
+    free(edge);
+    free(x);
+}
+
+/* At the tip of a spike the indices cannot be shared without pairs closer than the distance. */
+static void spikes_share_their_index(void **state) {
+    enum { N = 40, M = 20 };
+    qc_ctx *ctx = *state;
+    qc_mesh *flat = grid(ctx, TORUS, N, M, 1);
+    double *p = malloc(sizeof *p * 3 * (size_t)flat->n_vertices);
+    for (int i = 0; i < 8; i++) {
+        const int32_t tip = 5 * i * M + 2 * (i / 2) + 1 - i % 2;
+        qc_mesh *mesh = NULL, *fine = NULL;
+        qc_features *none = NULL, *f = NULL;
+        memcpy(p, flat->position, sizeof *p * 3 * (size_t)flat->n_vertices);
+        for (int k = 0; k < 3; k++) p[3 * tip + k] *= 2.5;
+        assert_int_equal(
+            qc_mesh_create(ctx, flat->n_vertices, p, flat->n_faces, flat->face_vertex, &mesh),
+            QC_OK);
+        assert_int_equal(qc_features_detect(ctx, mesh, PI, 0, NULL, &none), QC_OK);
+        assert_int_equal(qc_features_split(ctx, none, NULL, &fine, &f, NULL), QC_OK);
+        qc_complex *x = smoothest(ctx, fine);
+        int32_t left = -1;
+        assert_int_equal(qc_field_separate(ctx, fine, 0.7, NULL, NULL, x, &left), QC_OK);
+        assert_int_equal(left, 0);
+        const void *made[] = {mesh, fine, none, f};
+        for (size_t j = 0; j < sizeof made / sizeof *made; j++) qc_object_release(made[j]);
+        free(x);
+    }
+    qc_object_release(flat);
+    free(p);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lone_pairs_on_a_torus_cancel),
+        cmocka_unit_test(spikes_share_their_index),
         cmocka_unit_test(crowded_indices_are_shared),
         cmocka_unit_test(few_singularities_on_simple_surfaces),
         cmocka_unit_test(flat_surfaces_get_parallel_fields),
