@@ -83,7 +83,7 @@ static qc_status put_features(const climb *c) {
 }
 
 /* Whether an attempt is one where the integers of the user's own settings have failed. */
-static bool wants_imprint(const climb *c, rung r) {
+static bool wants_quantization(const climb *c, rung r) {
     const bool own = r.other == 0 && r.finer == 0 && (r.keep == ALL || r.keep == GUIDES);
     return !own && strcmp(c->quantize, "never") != 0;
 }
@@ -97,7 +97,7 @@ static qc_status set_rung(const climb *c, rung r) {
     if (status == QC_OK) status = qc_pipeline_set(c->pipeline, step, "refine", refine);
     if (status == QC_OK)
         status = qc_pipeline_set(c->pipeline, step, "quantize",
-                                 wants_imprint(c, r) ? "imprint" : c->quantize);
+                                 wants_quantization(c, r) ? "always" : c->quantize);
     if (status != QC_OK || !c->hard) return status;
     return qc_pipeline_set(c->pipeline, name_of(c, c->features), "hard",
                            r.keep == GUIDES ? "false" : "true");
@@ -138,7 +138,7 @@ static bool failed_early(const climb *c) {
 static bool worth_trying(const climb *c, rung next, rung before) {
     const qc__concessions *f = &c->given_up;
     if (!c->hard) return next.keep == GUIDES && !failed_early(c);
-    if (next.keep == ALL) return !failed_early(c) || wants_imprint(c, next);
+    if (next.keep == ALL) return !failed_early(c) || wants_quantization(c, next);
     if (next.keep == GUIDES) return before.keep != GUIDES || !failed_early(c);
     return f->n_gone < f->n;
 }

@@ -14,7 +14,7 @@ typedef struct params {
 static const char *const solvers[] = {QC_SOLVER_ID, NULL};
 
 static const char *const lattices[] = {"quads", "integer", "even", NULL};
-static const char *const quantize[] = {"never", "needed", "always", "imprint", NULL};
+static const char *const quantize[] = {"never", "needed", "always", NULL};
 static const char *const starts[] = {"direct", "greedy", NULL};
 
 static const qc_port in[] = {
@@ -45,7 +45,7 @@ static const qc_param table[] = {
     QC_PARAM_ENUM(
         params, quantize, QC_QUANTIZE_WHERE_NEEDED, quantize,
         "take integers for which an injective map is sure to exist: never, where rounding "
-        "cannot keep singularities and features apart, or always"),
+        "cannot keep singularities and features apart or folds over, or always"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {

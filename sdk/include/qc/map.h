@@ -94,10 +94,9 @@ enum {
 };
 enum {
     QC_QUANTIZE_NEVER = 0,
-    QC_QUANTIZE_WHERE_NEEDED =
-        1, /* where rounding parts no cones and features, or winds some wrong */
-    QC_QUANTIZE_ALWAYS = 2,
-    QC_QUANTIZE_IMPRINT = 3 /* always, and the map comes on a refined mesh, where it is injective */
+    QC_QUANTIZE_WHERE_NEEDED = 1, /* where rounding leaves points or features in one place, winds
+                                     cones wrong, or folds over between features */
+    QC_QUANTIZE_ALWAYS = 2
 };
 typedef struct qc_round_options {
     uint32_t struct_size;
@@ -118,8 +117,8 @@ typedef struct qc_round_options {
  * sizing asks for a number of quads the map is rescaled and rounded again until its area meets it,
  * or a larger number (a warning) where no integers keep cones and features apart. Quantization
  * (docs/theory/quantization.md) needs a map before rounding which is positive, QC_LATTICE_QUADS and
- * no poles; elsewhere `quantize` is without effect. Errors: NOMEM, CANCELLED, FAILED, those of the
- * solver. */
+ * no poles; elsewhere `quantize` is without effect. Errors: NOMEM, CANCELLED, FAILED (where =
+ * vertex: hard features leave no room), those of the solver. */
 QC_API qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
                               const qc_round_options *options, qc_corner_map **out);
 

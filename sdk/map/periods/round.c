@@ -100,7 +100,6 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
     if (status == QC_OK) status = make_period_matrix(&r);
     if (status == QC_OK) status = qc__round_align(&r);
     if (status == QC_OK) status = qc__round_meet(&r);
-    if (status == QC_OK) status = qc__round_unfold(&r);
     if (status == QC_OK) status = qc__round_publish(&r, out);
     qc__imprint_free(&r.imprint);
     qc__separation_free(r.separation);

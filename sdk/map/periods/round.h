@@ -45,13 +45,13 @@ typedef struct qc__rounding {
 
 /* Signed area of the image: unit cells covered. */
 double qc__round_area(const qc_complex *f, int32_t n_faces);
+/* Whether the best map folds over or winds wrong. */
+bool qc__round_folds(const qc__rounding *r);
 /* Dirichlet energy of corner values f in the norm without stiffening. */
 double qc__round_energy(const qc__rounding *r, const qc_complex *f);
 /* Puts the features of the seamless map on isolines, with real levels, and unfolds it. Then finds
  * what has to stay apart. */
 qc_status qc__round_align(qc__rounding *r);
-/* With the integers chosen, stiffens the best map where its features let it fold over. */
-qc_status qc__round_unfold(qc__rounding *r);
 /* The rounded map at a scale and its number of quads; unless coarse, keeps it when it beats the
  * best one. */
 qc_status qc__round_try(qc__rounding *r, double scale, double wanted, double *quads);

@@ -8,10 +8,7 @@
 #include "sdk/map/periods/unfold.h"
 #include "sdk/map/periods/wrong_cones.h"
 
-enum {
-    STIFFENING_ROUNDS = 12,
-    REACH = 3 /* target edge lengths within which points and features are kept apart */
-};
+enum { REACH = 3 /* target edge lengths within which points and features are kept apart */ };
 
 /* The frame field in combed charts. */
 static qc_status combed_frame(qc__rounding *r) {
@@ -37,29 +34,8 @@ static double curl_energy(const qc__rounding *r) {
     return energy;
 }
 
-/* Raises the weights where map f folds over, and makes the stiffness matrix anew. */
-static qc_status stiffen(qc__rounding *r, const qc_complex *f) {
-    const int32_t n_faces = r->mesh->n_faces;
-    if (!r->weight) {
-        r->weight = QC__NEW(r->ctx, double, n_faces);
-        if (!r->weight) return QC_ERR_NOMEM;
-        for (int32_t t = 0; t < n_faces; t++) r->weight[t] = 1;
-    }
-    for (int32_t c = 0; c < 3 * n_faces; c++) r->cotangent[c] /= r->weight[c / 3];
-    qc__stiffen(r->mesh, f, r->weight);
-    for (int32_t c = 0; c < 3 * n_faces; c++) r->cotangent[c] *= r->weight[c / 3];
-    qc__periods_free(r->periods);
-    r->periods = NULL;
-    return qc__periods_create(r->ctx, r->seams, r->cotangent, r->options.solver, &r->periods);
-}
-
-static int32_t count_folded(const qc__rounding *r, const qc_complex *f) {
-    int32_t n = 0;
-    for (int32_t t = 0; t < r->mesh->n_faces; t++) n += qc__round_area(f + 3 * (int64_t)t, 1) <= 0;
-    return n;
-}
-
-/* Unfolds the map; fewer faces fold and fewer cones wind wrong afterwards, mostly none. */
+/* Unfolds the map; fewer faces fold and fewer cones wind wrong afterwards, mostly none. What is
+ * left with hard features no integers mend. */
 static qc_status unfold(qc__rounding *r) {
     const qc_matching *matching = r->seamless->matching;
     const qc_cover cover = {r->mesh, matching->m};
@@ -70,47 +46,17 @@ static qc_status unfold(qc__rounding *r) {
     if (status == QC_OK && done.evaluations > 0) {
         qc__log(r->ctx, QC_LOG_INFO,
                 "the seamless map folds over at %d faces and winds wrong at %d places; after %d "
-                "evaluations "
-                "at %d and %d",
+                "evaluations at %d and %d",
                 (int)done.folded_before, (int)done.wrong_before, (int)done.evaluations,
                 (int)done.folded, (int)done.wrong);
         r->curl_energy = curl_energy(r);
     }
-    return status;
-}
-
-/* With the integers chosen, features let the map fold over where they lie close: it is stiffened
- * there and solved again. Of all maps the one with the fewest wrong cones, then folded faces, is
- * kept. */
-qc_status qc__round_unfold(qc__rounding *r) {
-    if (r->seams->n_levels == 0 || r->quantized) return QC_OK;
-    const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
-    const int32_t *index4 = r->seamless->matching->index4;
-    int32_t folded = count_folded(r, r->best), wrong = r->best_wrong, left = folded;
-    if (folded == 0) return QC_OK;
-    for (int64_t c = 0; c < n_corners; c++) {
-        r->z[c].re *= r->best_scale;
-        r->z[c].im *= r->best_scale;
-    }
-    memcpy(r->trial, r->best, sizeof *r->trial * (size_t)n_corners);
-    qc_status status = QC_OK;
-    for (int32_t i = 0; i < STIFFENING_ROUNDS && left > 0 && status == QC_OK; i++) {
-        if (!qc__progress(r->ctx, 1)) return QC_ERR_CANCELLED;
-        status = stiffen(r, r->trial);
-        if (status == QC_OK)
-            status = qc__align(r->ctx, r->periods, NULL, r->z, r->trial, r->best_rounded);
-        if (status != QC_OK) return status;
-        const int32_t winding = qc__wrong_cones(r->mesh, index4, r->trial);
-        left = count_folded(r, r->trial);
-        if (winding > wrong || (winding == wrong && left >= folded)) continue;
-        wrong = winding;
-        folded = left;
-        memcpy(r->best, r->trial, sizeof *r->best * (size_t)n_corners);
-    }
-    for (int64_t c = 0; c < n_corners; c++)
-        r->trial[c] = qc__pair(qc__complex(r->best[c]) - r->best_scale * qc__complex(r->f[c]));
-    r->harmonic = qc__round_energy(r, r->trial);
-    return status;
+    const bool clean = done.folded + done.wrong == 0;
+    if (status != QC_OK || clean || r->seams->n_levels == 0) return status;
+    return qc__fail(r->ctx, QC_ERR_FAILED, done.where,
+                    "the map folds over at %d faces and winds wrong at %d places before integers "
+                    "are chosen (first: vertex %d); hard features leave no room there",
+                    (int)done.folded, (int)done.wrong, (int)done.where);
 }
 
 qc_status qc__round_align(qc__rounding *r) {

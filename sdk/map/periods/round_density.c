@@ -57,6 +57,13 @@ static bool is_hopeless(const qc__rounding *r) {
     return r->best_collisions > 0 || r->best_wrong > (share > WRONG_CONES ? share : WRONG_CONES);
 }
 
+/* Whether untangling could be in vain: features leave a fold-over little room. */
+static bool needs_quantization(const qc__rounding *r) {
+    if (r->options.trial) return false;
+    if (r->best_collisions > 0 || r->best_wrong > 0) return true;
+    return r->seams->n_levels > 0 && qc__round_folds(r);
+}
+
 static qc_status meet_refined(qc__rounding *r, double refine) {
     r->options.refine = refine;
     r->best_scale = 0;
@@ -80,13 +87,12 @@ static qc_status refuse_collisions(const qc__rounding *r) {
  * sqrt(2), up to 8 times as many; with hard features twice as many. */
 qc_status qc__round_meet(qc__rounding *r) {
     const double asked = r->options.refine;
-    const bool always = r->options.quantize >= QC_QUANTIZE_ALWAYS && !r->options.trial;
+    const bool always = r->options.quantize == QC_QUANTIZE_ALWAYS && !r->options.trial;
     bool quantized = false;
     qc_status status = always ? qc__round_quantized(r, &quantized) : QC_OK;
     if (status != QC_OK || quantized) return status;
     status = meet_density(r);
-    if (status == QC_OK && r->options.quantize == QC_QUANTIZE_WHERE_NEEDED && !r->options.trial &&
-        (r->best_collisions > 0 || r->best_wrong > 0))
+    if (status == QC_OK && r->options.quantize == QC_QUANTIZE_WHERE_NEEDED && needs_quantization(r))
         status = qc__round_quantized(r, &quantized);
     if (quantized) return status;
     const int32_t pairs = r->best_collisions, wrong = r->best_wrong;

@@ -95,19 +95,6 @@ static void warn_density(const qc__rounding *r, double wanted, double made) {
                 made);
 }
 
-static qc_status blend_best(quantizing *q) {
-    qc__rounding *r = q->r;
-    const qc_status status = qc__round_blend(r, r->mesh, r->best, q->feasible, r->trial);
-    if (status != QC_OK) return status;
-    const int64_t n_corners = 3 * (int64_t)r->mesh->n_faces;
-    memcpy(r->best, r->trial, sizeof *r->best * (size_t)n_corners);
-    r->best_wrong = qc__wrong_cones(r->mesh, r->seamless->matching->index4, r->best);
-    for (int64_t c = 0; c < n_corners; c++)
-        r->trial[c] = qc__pair(qc__complex(r->best[c]) - r->best_scale * qc__complex(r->f[c]));
-    r->harmonic = qc__round_energy(r, r->trial);
-    return QC_OK;
-}
-
 /* On the refined mesh the harmonic map is what it is on the faces of the old one, and the feasible
  * one is that of the coarse complex, in the charts which were joined. */
 static qc_status blend_imprint(quantizing *q) {
@@ -170,11 +157,9 @@ static qc_status quantize(quantizing *q, bool *done) {
     mark_points(q);
     const int8_t *axis = r->seamless->matching->axis ? q->axis : NULL;
     const qc__exact_map map = {r->mesh, q->uv, q->bits, q->rotation, axis, q->point};
-    const bool imprint = r->options.quantize == QC_QUANTIZE_IMPRINT;
     double made = 0, quads;
     if (status == QC_OK)
-        status = qc__quantize(r->ctx, &map, scale, sized, q->values, &made,
-                              imprint ? &r->imprint : NULL);
+        status = qc__quantize(r->ctx, &map, scale, sized, q->values, &made, &r->imprint);
     if (status == QC_ERR_FAILED) {
         qc__log(r->ctx, QC_LOG_INFO, "no quantization: %s", qc_ctx_error(r->ctx)->text);
         qc__clear_error(r->ctx);
@@ -193,8 +178,11 @@ static qc_status quantize(quantizing *q, bool *done) {
     *done = r->quantized = true;
     warn_density(r, sized, made);
     status = qc__round_extend(r, sqrt(made / area), sized, NULL, &quads);
-    if (status != QC_OK) return status;
-    return r->imprint.mesh ? blend_imprint(q) : blend_best(q);
+    if (status != QC_OK || !qc__round_folds(r)) {
+        qc__imprint_free(&r->imprint);
+        return status;
+    }
+    return blend_imprint(q);
 }
 
 qc_status qc__round_quantized(qc__rounding *r, bool *done) {

@@ -18,6 +18,12 @@ double qc__round_area(const qc_complex *f, int32_t n_faces) {
     return area;
 }
 
+bool qc__round_folds(const qc__rounding *r) {
+    for (int32_t t = 0; t < r->mesh->n_faces; t++)
+        if (qc__round_area(r->best + 3 * (int64_t)t, 1) <= 0) return true;
+    return r->best_wrong > 0;
+}
+
 double qc__round_energy(const qc__rounding *r, const qc_complex *f) {
     double energy = 0;
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {

@@ -68,7 +68,8 @@ static qc_status descend(unfolder *u, double eps) {
 
 typedef struct state {
     int32_t folded, wrong;
-    double least; /* det J */
+    double least;  /* det J */
+    int32_t where; /* vertex at one of them, -1 = none */
 } state;
 
 static double face_det(const unfolder *u, int64_t t) {
@@ -100,16 +101,24 @@ static void read_reduced(unfolder *u) {
 /* The state of f. */
 static state look(unfolder *u) {
     const qc_mesh *mesh = u->mesh;
-    state s = {.least = INFINITY};
+    state s = {.least = INFINITY, .where = -1};
     read_reduced(u);
     for (int64_t t = 0; t < mesh->n_faces; t++) {
         const double d = face_det(u, t);
         s.folded += !(d > 0);
+        if (!(d > 0) && d < s.least) s.where = mesh->face_vertex[3 * t];
         if (d < s.least) s.least = d;
     }
-    for (int32_t v = 0; v < mesh->n_vertices; v++) s.wrong += winds_wrong(u, v);
-    for (int32_t e = 0; e < mesh->n_edges; e++)
-        s.wrong += runs_backwards(u, mesh->edge_halfedge[2 * (int64_t)e]);
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        if (!winds_wrong(u, v)) continue;
+        s.wrong++;
+        if (s.where < 0) s.where = v;
+    }
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        if (!runs_backwards(u, mesh->edge_halfedge[2 * (int64_t)e])) continue;
+        s.wrong++;
+        if (s.where < 0) s.where = mesh->edge_vertex[2 * (int64_t)e];
+    }
     return s;
 }
 
@@ -283,8 +292,8 @@ qc_status qc__unfold(qc_ctx *ctx, const qc__periods *periods, const double *P,
         }
     }
     if (status == QC_OK)
-        *result =
-            (qc__unfolding){best.folded, best.wrong, before.folded, before.wrong, u.evaluations};
+        *result = (qc__unfolding){best.folded,   best.wrong,   best.where,
+                                  before.folded, before.wrong, u.evaluations};
     release(&u);
     return status;
 }

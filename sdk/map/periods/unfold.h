@@ -12,6 +12,7 @@
 typedef struct qc__unfolding {
     int32_t folded, wrong; /* faces with det <= 0; vertices which wind otherwise than the field
                               and features which run backwards */
+    int32_t where;         /* vertex at one of them, -1 = none */
     int32_t folded_before, wrong_before;
     int32_t evaluations; /* of the energy of the whole map */
 } qc__unfolding;

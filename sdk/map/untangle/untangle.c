@@ -14,7 +14,7 @@ static const double good_det = 1e-4; /* faces below it count as folded          
 static const double longest_step = 0.125, shortest_step = 0.125 / 8; /* of the continuation */
 static const double moved_far = 1e-6; /* parameter units: less is rounding on the way */
 /* Evaluations of the whole map, at most, on the way from the relaxed map and at its end. */
-static const int64_t walk_effort = 8000, end_effort = 8000;
+static const int64_t walk_effort = 1000, end_effort = 1000;
 enum {
     GROWTHS = 5, /* of the neighbourhood: 3, 6, 12, 24, 48 rings */
     RELAXED_RINGS = 4
