@@ -4,7 +4,9 @@
 #include "sdk/mesh/repair/edit.h"
 
 enum { ROUNDS = 32 };
-static const double LEAST = 1e-12; /* area over squared longest edge */
+/* Area over squared longest edge: cotangents are at most its inverse, and factors of matrices of
+ * them keep half of the digits. */
+static const double LEAST = 1e-7;
 
 static double length2(const qc__repair *r, int32_t h) {
     const double *p = qc__repair_point(r, r->triangle[qc_next(h)]);

@@ -72,6 +72,18 @@ static void test_cap(void **state) {
     check(*state, &x, 0.01);
 }
 
+/* The same with a cap of 1e-8 of its length, whose cotangents no factorisation survives. */
+static void test_thin_cap(void **state) {
+    const example x = {OCTAHEDRON "v .50000001 .50000001 0\n" LOWER
+                                  "f 1 7 5\nf 7 2 5\nf 1 2 7\nf 2 3 5\nf 3 4 5\nf 4 1 5\n",
+                       1,
+                       7,
+                       10,
+                       2,
+                       0};
+    check(*state, &x, 0.01);
+}
+
 /* The top is two vertices 1e-14 apart: two needles between them. */
 static void test_needle(void **state) {
     const example x = {OCTAHEDRON "v 1e-14 0 1\n" LOWER
@@ -141,7 +153,8 @@ static void test_many_caps(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cap), cmocka_unit_test(test_needle), cmocka_unit_test(test_zero_edge),
+        cmocka_unit_test(test_cap),      cmocka_unit_test(test_thin_cap),
+        cmocka_unit_test(test_needle),   cmocka_unit_test(test_zero_edge),
         cmocka_unit_test(test_boundary), cmocka_unit_test(test_many_caps)};
     return cmocka_run_group_tests(tests, setup, teardown);
 }
