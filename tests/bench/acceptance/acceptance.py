@@ -132,6 +132,9 @@ def main():
             print(f"- {run.model.name}, `{run.mode}`, {run.quads} quads, {o['status']}: {o['text']}")
     print(f"\n{len(outcomes) - len(bad)} of {len(outcomes)} runs good, {len(outcomes) - len(failed)} valid, "
           f"each with at most {a.limit} CPU seconds.")
+    old = sum(o["build"] != a.build for _, o in outcomes)
+    if old:
+        print(f"{old} outcomes are those of earlier builds.")
     return 1 if a.strict and bad or not outcomes else 0
 
 
