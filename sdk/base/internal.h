@@ -127,7 +127,8 @@ qc_status qc__read_file(qc_ctx *ctx, const char *path, char **data, size_t *size
 
 /* Locale-independent strtod / "%.17g": the host may have set a locale with a decimal comma. */
 double qc__parse_double(const char *text, char **end);
-int qc__print_double(char *buffer, size_t size, double value); /* shortest that round-trips */
+/* The shortest which round-trips, cut to `size` with its end; returns its whole length. */
+int qc__print_double(char *buffer, size_t size, double value);
 
 double qc__now(void); /* monotonic seconds, for reports only */
 

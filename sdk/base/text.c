@@ -70,14 +70,15 @@ double qc__parse_double(const char *text, char **end) {
 }
 
 int qc__print_double(char *buffer, size_t size, double value) {
+    char text[64]; /* sign, 17 digits, exponent and a separator of any locale */
     int length = 0;
     for (int digits = 15; digits <= 17; digits++) {
-        length = snprintf(buffer, size, "%.*g", digits, value);
-        if (digits == 17 || strtod(buffer, NULL) == value) break;
+        length = snprintf(text, sizeof text, "%.*g", digits, value);
+        if (digits == 17 || strtod(text, NULL) == value) break;
     }
     const char *point = decimal_point();
     if (strcmp(point, ".") != 0) {
-        char *p = strstr(buffer, point);
+        char *p = strstr(text, point);
         if (p) {
             const size_t extra = strlen(point);
             *p = '.';
@@ -85,5 +86,9 @@ int qc__print_double(char *buffer, size_t size, double value) {
             length -= (int)extra - 1;
         }
     }
+    if (size == 0) return length;
+    const size_t kept = (size_t)length < size ? (size_t)length : size - 1;
+    memcpy(buffer, text, kept);
+    buffer[kept] = '\0';
     return length;
 }

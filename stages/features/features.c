@@ -64,9 +64,13 @@ static qc_status find(const qc_run *run, const params *given, const qc_mesh *mes
     if (!status && given->strokes && *given->strokes)
         status = add_strokes(run, mesh, given->strokes, reach, edge);
     if (status || !given->hard) return status;
-    return qc_features_prune(run->ctx, mesh, fmin(given->weak, given->angle) * degree, 0.5 * quad,
-                             given->blunt * degree, given->shortest * quad,
-                             given->sharpest * degree, edge);
+    qc_prune_options o = QC_PRUNE_OPTIONS_INIT;
+    o.weak = fmin(given->weak, given->angle) * degree;
+    o.half = 0.5 * quad;
+    o.blunt = given->blunt * degree;
+    o.least = given->shortest * quad;
+    o.sharp = given->sharpest * degree;
+    return qc_features_prune(run->ctx, mesh, &o, edge);
 }
 
 static qc_status features(const qc_run *run, const void *p) {

@@ -304,17 +304,27 @@ typedef struct qc_feature_chain {
 /* The same chains measured: one entry for each of the *n of qc_features_chains. */
 QC_API qc_status qc_features_measure_chains(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                             qc_feature_chain *out);
-/* Closes gaps of creases along edges of dihedral angle above `weak` (radians) which lead on from a
- * free end to another feature, lets creases which take two sides of a face at an angle below 75
- * degrees take the third; then drops chains of creases at which the surface, seen from `half`
- * (units of the mesh, half a quad; three edges at least) on either side, bends by less than `blunt`
- * (radians) on average (docs/theory/features.md, K.0), creases with a free end shorter than `least`
- * (units of the mesh; closed ones shorter than twice that), then of two features which meet in less
- * than `sharp` (radians) the weaker one, each named by a warning with the numbers of the input:
- * creases by their mean angle, then groups and strokes; the boundary stays. The last two repeat
- * until nothing changes. Errors: NOMEM, CANCELLED. */
-QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh, double weak, double half,
-                                   double blunt, double least, double sharp, uint8_t *edge);
+typedef struct qc_prune_options {
+    uint32_t struct_size;
+    double weak;  /* radians: dihedral angle above which an edge may close a gap */
+    double half;  /* units of the mesh, half a quad: the scale at which bluntness is measured */
+    double blunt; /* radians: creases which bend by less there go; 0 = none do */
+    double least; /* units of the mesh: shorter creases with a free end go; 0 = none do */
+    double sharp; /* radians: of two features which meet in less the weaker goes; 0 = none do */
+} qc_prune_options;
+#define QC_PRUNE_OPTIONS_INIT                                                                      \
+    { sizeof(qc_prune_options), 0.3490658503988659, 0, 0.5235987755982988, 0, 0.5235987755982988 }
+/* Closes gaps of creases along edges of dihedral angle above `weak` which lead on from a free end
+ * to another feature, lets creases which take two sides of a face at an angle below 75 degrees take
+ * the third; then drops chains of creases at which the surface, seen from `half` (three edges at
+ * least) on either side, bends by less than `blunt` on average (docs/theory/features.md, K.0),
+ * creases with a free end shorter than `least` (closed ones shorter than twice that), then of two
+ * features which meet in less than `sharp` the weaker one, each named by a warning with the numbers
+ * of the input: creases by their mean angle, then groups and strokes; the boundary stays. The last
+ * two repeat until nothing changes. options NULL: 20 degrees, 30 and 30, no lengths. Errors: NOMEM,
+ * CANCELLED. */
+QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh,
+                                   const qc_prune_options *options, uint8_t *edge);
 
 /* --- mirror symmetry -------------------------------------------------------------------------- */
 

@@ -63,6 +63,10 @@ static void round_trips(void) {
     char text[64], *end;
     qc__print_double(text, sizeof text, 0.1);
     assert_string_equal(text, "0.1");
+    char narrow[5];
+    assert_int_equal(qc__print_double(narrow, sizeof narrow, -0.125), 6);
+    assert_string_equal(narrow, "-0.1");
+    assert_int_equal(qc__print_double(NULL, 0, -0.125), 6);
     assert_true(qc__parse_double("1.5e3/7", &end) == 1500 && *end == '/');
     assert_true(qc__parse_double("-0.25 1", &end) == -0.25 && *end == ' ');
     assert_true(qc__parse_double("x", &end) == 0 && *end == 'x');

@@ -36,9 +36,10 @@ static inline qc_features *pruned_features(qc_ctx *ctx, qc_mesh *mesh, double le
     uint8_t *edge = malloc((size_t)mesh->n_edges);
     assert_int_equal(qc_features_detect(ctx, mesh, 35 * PI / 180, 0, NULL, &found), QC_OK);
     memcpy(edge, found->edge, (size_t)mesh->n_edges);
-    assert_int_equal(qc_features_prune(ctx, mesh, 20 * PI / 180, 0.25 * least, 30 * PI / 180, least,
-                                       30 * PI / 180, edge),
-                     QC_OK);
+    qc_prune_options options = QC_PRUNE_OPTIONS_INIT;
+    options.half = 0.25 * least;
+    options.least = least;
+    assert_int_equal(qc_features_prune(ctx, mesh, &options, edge), QC_OK);
     assert_int_equal(qc_features_create(ctx, mesh, edge, true, &hard), QC_OK);
     assert_int_equal(qc_features_split(ctx, hard, NULL, &refined, &out, NULL), QC_OK);
     assert_ptr_equal(refined, out->mesh);

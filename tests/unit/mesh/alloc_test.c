@@ -32,7 +32,7 @@ static qc_status work(qc_ctx *ctx, const void *unused) {
     for (int i = 0; s == QC_OK && i < 6; i++) edge[i] = features->edge[i];
     if (s == QC_OK) s = qc_features_chains(ctx, m, edge, chain, &n_chains);
     if (s == QC_OK) s = qc_features_measure_chains(ctx, m, edge, measured);
-    if (s == QC_OK) s = qc_features_prune(ctx, m, 0.2, 0.1, 0.1, 0.1, 2, edge);
+    if (s == QC_OK) s = qc_features_prune(ctx, m, NULL, edge);
     if (s == QC_OK) s = qc_polygon_mesh_create(ctx, 4, 4, 12, 2, 1, 7, &p);
     for (int i = 0; s == QC_OK && i < 12; i++) p->face_vertex[i] = face[i];
     for (int i = 0; s == QC_OK && i < 5; i++) p->face_offset[i] = 3 * i;

@@ -114,6 +114,11 @@ static void test_groups(void **state) {
     qc_object_release(m);
 }
 
+static void prune(qc_ctx *ctx, const qc_mesh *m, qc_prune_options options, uint8_t *edge) {
+    options.struct_size = sizeof options;
+    assert_int_equal(qc_features_prune(ctx, m, &options, edge), QC_OK);
+}
+
 /* On a cube a scratch with a free end goes when it is shorter than asked for, and a missing piece
  * of an edge comes back. */
 static void test_prune(void **state) {
@@ -136,13 +141,24 @@ static void test_prune(void **state) {
     edge[missing] = 0;
     edge[extra] = QC_FEATURE_CREASE;
     const double length = m->mean_edge_length;
-    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0, 0, 0.1 * length, 0, edge), QC_OK);
+    /* an older caller knows no `least`: none is the default */
+    const qc_prune_options shorter = {
+        .struct_size = offsetof(qc_prune_options, least), .weak = 0.4, .least = 2 * length};
+    uint8_t *same = malloc((size_t)m->n_edges);
+    memcpy(same, edge, (size_t)m->n_edges);
+    assert_int_equal(qc_features_prune(ctx, m, &shorter, same), QC_OK);
+    assert_true(same[missing] == QC_FEATURE_CREASE && same[extra] == QC_FEATURE_CREASE);
+    same[missing] = 0;
+    assert_int_equal(qc_features_prune(ctx, m, NULL, same), QC_OK);
+    assert_true(same[missing] == QC_FEATURE_CREASE && same[extra] == 0); /* flat, hence blunt */
+    free(same);
+    prune(ctx, m, (qc_prune_options){.weak = 0.4, .least = 0.1 * length}, edge);
     assert_int_equal(edge[missing], QC_FEATURE_CREASE);
     assert_int_equal(edge[extra], QC_FEATURE_CREASE);
-    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0, 0, 2 * length, 0, edge), QC_OK);
+    prune(ctx, m, (qc_prune_options){.weak = 0.4, .least = 2 * length}, edge);
     assert_memory_equal(edge, f->edge, (size_t)m->n_edges);
     /* longer than all edges: only what has a free end goes */
-    assert_int_equal(qc_features_prune(ctx, m, 0.4, 0, 0, 1e9, 0, edge), QC_OK);
+    prune(ctx, m, (qc_prune_options){.weak = 0.4, .least = 1e9}, edge);
     assert_memory_equal(edge, f->edge, (size_t)m->n_edges);
     free(edge);
     free(chain);
@@ -162,10 +178,10 @@ static void test_zigzag(void **state) {
         c++;
     const int32_t side[] = {m->halfedge_edge[qc_next(c)], m->halfedge_edge[qc_prev(c)]};
     edge[side[0]] = edge[side[1]] = QC_FEATURE_LINE;
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 0, edge), QC_OK);
+    prune(ctx, m, (qc_prune_options){.weak = 1}, edge);
     assert_true(count(m, edge) == 2 && edge[side[0]] && edge[side[1]]);
     edge[side[0]] = edge[side[1]] = QC_FEATURE_CREASE;
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 0, edge), QC_OK);
+    prune(ctx, m, (qc_prune_options){.weak = 1}, edge);
     assert_true(count(m, edge) == 1 && edge[m->halfedge_edge[c]] == QC_FEATURE_CREASE);
     free(angle);
     free(edge);
@@ -197,10 +213,10 @@ static void test_sharp_features(void **state) {
     assert_int_equal(
         qc_features_add_strokes(ctx, m, m->n_vertices, m->position, 4, stroke, 0, edge), QC_OK);
     assert_int_equal(count(m, edge), N + 4);
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 20 * PI / 180, edge), QC_OK);
+    prune(ctx, m, (qc_prune_options){.weak = 1, .sharp = 20 * PI / 180}, edge);
     assert_int_equal(count(m, edge), N + 4);
     assert_int_equal(warnings, 0);
-    assert_int_equal(qc_features_prune(ctx, m, 1, 0, 0, 0, 40 * PI / 180, edge), QC_OK);
+    prune(ctx, m, (qc_prune_options){.weak = 1, .sharp = 40 * PI / 180}, edge);
     assert_int_equal(count(m, edge), N + 2);
     assert_int_equal(warnings, 1);
     free(edge);
@@ -243,8 +259,10 @@ static void test_scale(void **state) {
         uint8_t *edge = malloc((size_t)m->n_edges);
         memcpy(edge, f->edge, (size_t)m->n_edges);
         assert_true(f->n_creases > (folded ? 20 : 200));
-        assert_int_equal(qc_features_prune(ctx, m, 20 * degree, 1.5, 30 * degree, 4, 0, edge),
-                         QC_OK);
+        prune(
+            ctx, m,
+            (qc_prune_options){.weak = 20 * degree, .half = 1.5, .blunt = 30 * degree, .least = 4},
+            edge);
         int32_t kept = 0, along = 0;
         for (int32_t e = 0; e < m->n_edges; e++) {
             if (edge[e] != QC_FEATURE_CREASE) continue;
