@@ -27,10 +27,6 @@ typedef struct qc__feature_network {
     int32_t n, named;
 } qc__feature_network;
 
-static inline int32_t qc__other_end(const qc_mesh *mesh, int32_t e, int32_t v) {
-    return mesh->edge_vertex[2 * e] == v ? mesh->edge_vertex[2 * e + 1] : mesh->edge_vertex[2 * e];
-}
-
 /* edge: n_edges QC_FEATURE_... flags, copied. Freed by the caller also when it fails. */
 qc_status qc__feature_network_create(qc_ctx *ctx, const qc_mesh *mesh, const uint8_t *edge,
                                      qc__feature_network *w);

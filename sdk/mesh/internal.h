@@ -17,6 +17,14 @@ qc_status qc__sort_keys(qc_ctx *ctx, int32_t n, uint64_t *key, int32_t *index);
 /* A key which orders non-negative doubles (infinity included) like the numbers themselves. */
 uint64_t qc__sort_key(double x);
 
+/* --- edges */
+
+/* The end of edge e which is not v. */
+static inline int32_t qc__other_end(const qc_mesh *mesh, int32_t e, int32_t v) {
+    const int32_t *end = mesh->edge_vertex + 2 * (int64_t)e;
+    return end[end[0] == v];
+}
+
 /* --- union-find (union_find.c): parent[i] = i initially; the lowest member is the root */
 
 void qc__sets_init(int32_t *parent, int32_t n);
