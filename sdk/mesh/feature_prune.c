@@ -65,12 +65,22 @@ static bool sector_at(const network *w, int32_t c, int32_t side[2], double *angl
     return false;
 }
 
-/* Of the two chains at a sharp sector the weaker one loses; -1 = both are the boundary. */
+/* Strengths and lengths are sums: rounding must not tell equal ones apart. */
+static bool clearly_less(double a, double b) {
+    return a < (1 - 1e-9) * b;
+}
+
+/* Of the two chains at a sharp sector the weaker one loses, of equal ones the shorter; -1 = both
+ * are the boundary. */
 static int32_t weaker(const network *w, const int32_t side[2]) {
-    const int32_t a = w->of[side[0]], b = w->of[side[1]];
-    const double sa = w->chain[a].strength, sb = w->chain[b].strength;
-    if (fmin(sa, sb) > 0.999 * QC__STRENGTH_BOUNDARY) return -1;
-    return sa < sb || (!(sb < sa) && a > b) ? a : b;
+    const int32_t i = w->of[side[0]], j = w->of[side[1]];
+    const chain *a = &w->chain[i], *b = &w->chain[j];
+    if (fmin(a->strength, b->strength) > 0.999 * QC__STRENGTH_BOUNDARY) return -1;
+    if (clearly_less(a->strength, b->strength)) return i;
+    if (clearly_less(b->strength, a->strength)) return j;
+    if (clearly_less(a->length, b->length)) return i;
+    if (clearly_less(b->length, a->length)) return j;
+    return i > j ? i : j;
 }
 
 /* A chain which is the stronger one elsewhere waits: what it lost against may go first. */
@@ -91,10 +101,10 @@ static void mark_sharp(qc_ctx *ctx, network *w, double sharp) {
         w->chain[i].drop = true;
         if (w->named++ >= NAMED) continue;
         qc__log(ctx, QC_LOG_WARNING,
-                "feature from vertex %d to %d dropped: at vertex %d it meets another one in %.0f "
-                "degrees, which leaves no room for quads",
+                "feature from vertex %d to %d, of length %.3g, dropped: at vertex %d it meets "
+                "another one in %.0f degrees, which leaves no room for quads",
                 (int)input_number(w->mesh, w->chain[i].end[0]),
-                (int)input_number(w->mesh, w->chain[i].end[1]),
+                (int)input_number(w->mesh, w->chain[i].end[1]), w->chain[i].length,
                 (int)input_number(w->mesh, w->mesh->face_vertex[c]), angle * 57.29577951308232);
     }
 }

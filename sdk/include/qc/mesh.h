@@ -320,9 +320,9 @@ typedef struct qc_prune_options {
  * least) on either side, bends by less than `blunt` on average (docs/theory/features.md, K.0),
  * creases with a free end shorter than `least` (closed ones shorter than twice that), then of two
  * features which meet in less than `sharp` the weaker one, each named by a warning with the numbers
- * of the input: creases by their mean angle, then groups and strokes; the boundary stays. The last
- * two repeat until nothing changes. options NULL: 20 degrees, 30 and 30, no lengths. Errors: NOMEM,
- * CANCELLED. */
+ * of the input: creases by their mean angle, then groups and strokes, of equal ones the shorter;
+ * the boundary stays. The last two repeat until nothing changes. options NULL: 20 degrees, 30 and
+ * 30, no lengths. Errors: NOMEM, CANCELLED. */
 QC_API qc_status qc_features_prune(qc_ctx *ctx, const qc_mesh *mesh,
                                    const qc_prune_options *options, uint8_t *edge);
 
