@@ -1,4 +1,4 @@
-/* Surfaces, directions and a context for the tests of sdk/field. */
+/* Surfaces and directions for the tests of sdk/field. */
 #ifndef QC_TEST_FIELD_SURFACES_H
 #define QC_TEST_FIELD_SURFACES_H
 
@@ -14,19 +14,9 @@
 #include <cmocka.h>
 #include <qc/field.h>
 
+#include "unit/context.h"
+
 static const double PI = 3.14159265358979323846;
-
-static inline int set_up(void **state) {
-    qc_ctx *ctx = NULL;
-    if (qc_ctx_create(NULL, &ctx) != QC_OK) return -1;
-    *state = ctx;
-    return 0;
-}
-
-static inline int tear_down(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
 
 /* Uniform numbers in [0, 1), the same on every machine. */
 static inline double uniform(uint64_t *state) {

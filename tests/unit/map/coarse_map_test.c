@@ -138,8 +138,7 @@ static bool assert_same_map(const exact_case *e, const qc__coarse_map *m) {
 }
 
 static void complexes_of_random_maps(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng r = {5};
     int32_t cases = 0, own = 0;
     for (int i = 0; i < N_MAPS; i++) {
@@ -156,7 +155,6 @@ static void complexes_of_random_maps(void **state) {
         exact_free(&e);
     }
     assert_true(cases > N_MAPS / 2 && own > cases / 2);
-    qc_ctx_free(ctx);
 }
 
 /* The refined map is positive everywhere and has the quads which were promised. */
@@ -193,8 +191,7 @@ static void assert_imprint(qc_ctx *ctx, const exact_case *e, qc__imprint *p, dou
 
 /* Integers at any scale make the map integer-seamless, with the same rotations and features. */
 static void values_are_integer_seamless(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng r = {6};
     for (int i = 0; i < N_MAPS / 3; i++) {
         exact_case e;
@@ -219,7 +216,6 @@ static void values_are_integer_seamless(void **state) {
         }
         exact_free(&e);
     }
-    qc_ctx_free(ctx);
 }
 
 static qc_status quantize_and_free(qc_ctx *ctx, const void *data) {
@@ -234,8 +230,7 @@ static qc_status quantize_and_free(qc_ctx *ctx, const void *data) {
 }
 
 static void allocations_may_fail(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng r = {11};
     for (int cases = 0; cases < 3;) {
         exact_case e;
@@ -244,7 +239,6 @@ static void allocations_may_fail(void **state) {
         exact_free(&e);
         cases++;
     }
-    qc_ctx_free(ctx);
 }
 
 int main(void) {
@@ -253,5 +247,5 @@ int main(void) {
         cmocka_unit_test(values_are_integer_seamless),
         cmocka_unit_test(allocations_may_fail),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

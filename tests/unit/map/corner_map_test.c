@@ -2,8 +2,7 @@
 #include "unit/map/maps.h"
 
 static void round_trip_keeps_everything(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng r = {1};
     const uint8_t voxel[1] = {1};
     maps_list l = maps_voxels(1, voxel, 3, 2, 0.2, &r);
@@ -23,12 +22,10 @@ static void round_trip_keeps_everything(void **state) {
     qc_object_release(polygons);
     qc_object_release(map);
     qc_object_release(back);
-    qc_ctx_free(ctx);
 }
 
 static void unused_vertices_are_dropped(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     qc_polygon_mesh *p = NULL;
     qc_corner_map *map = NULL;
     maps_ok(ctx, qc_polygon_mesh_create(ctx, 5, 1, 3, 3, 0, 0, &p));
@@ -48,12 +45,10 @@ static void unused_vertices_are_dropped(void **state) {
     assert_int_equal(qc_corner_map_from_polygons(ctx, p, &map), QC_ERR_INPUT);
     assert_non_null(strstr(qc_ctx_error(ctx)->text, "face 0 has no texture coordinate"));
     qc_object_release(p);
-    qc_ctx_free(ctx);
 }
 
 static void unusable_values_are_refused(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng r = {1};
     maps_list l = maps_plane(2, 2, 2, 0, 0, 0, 0, &r);
     qc_mesh *mesh = NULL;
@@ -67,7 +62,6 @@ static void unusable_values_are_refused(void **state) {
     assert_null(map);
     qc_object_release(mesh);
     maps_list_free(&l);
-    qc_ctx_free(ctx);
 }
 
 int main(void) {
@@ -76,5 +70,5 @@ int main(void) {
         cmocka_unit_test(unused_vertices_are_dropped),
         cmocka_unit_test(unusable_values_are_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -263,15 +263,6 @@ static void boundary_is_followed(void **state) {
     }
 }
 
-static int set_up(void **state) {
-    *state = maps_context();
-    return 0;
-}
-static int tear_down(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hole_inside_a_cell_stays),

@@ -263,15 +263,6 @@ static void sources_give_the_positions(void **state) {
     qc_object_release(m);
 }
 
-static int set_up(void **state) {
-    *state = maps_context();
-    return 0;
-}
-static int tear_down(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(aligned_squares),

@@ -33,8 +33,7 @@ static qc_corner_map *cube(qc_ctx *ctx, int k, double n, double offset) {
 }
 
 static void transitions_are_exact(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng noise = {3};
     qc_corner_map *map = cube(ctx, 5, 3, 0), *back = NULL;
     for (int32_t i = 0; i < 6 * map->mesh->n_faces; i++)
@@ -65,12 +64,10 @@ static void transitions_are_exact(void **state) {
     qc_object_release(back);
     qc_object_release(grid);
     qc_object_release(map);
-    qc_ctx_free(ctx);
 }
 
 static void far_charts_keep_their_precision(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng r = {5};
     maps_list l = maps_plane(4, 5, 5, 0.2, 0, 1e7, -1e7, &r);
     qc_corner_map *map = maps_finish(ctx, &l);
@@ -80,12 +77,10 @@ static void far_charts_keep_their_precision(void **state) {
     assert_exact(grid);
     qc_object_release(grid);
     qc_object_release(map);
-    qc_ctx_free(ctx);
 }
 
 static void open_seam_is_refused(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     qc_corner_map *map = cube(ctx, 4, 3, 0);
     const qc_mesh *m = map->mesh;
     ((double *)(uintptr_t)map->uv)[2 * 40] += 0.3;
@@ -103,12 +98,10 @@ static void open_seam_is_refused(void **state) {
     assert_exact(grid);
     qc_object_release(grid);
     qc_object_release(map);
-    qc_ctx_free(ctx);
 }
 
 static void half_integer_cone_is_refused(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     qc_corner_map *map = cube(ctx, 4, 3, 0.5);
     qc_grid_map *grid = NULL;
     assert_int_equal(qc_grid_map_create(ctx, map, 0, &grid), QC_ERR_FAILED);
@@ -117,12 +110,10 @@ static void half_integer_cone_is_refused(void **state) {
     const double *p = map->mesh->position + 3 * error->where;
     for (int i = 0; i < 3; i++) assert_true(fabs(fabs(p[i] - 0.5) - 0.5) < 0.02);
     qc_object_release(map);
-    qc_ctx_free(ctx);
 }
 
 static void cone_of_two_turns_is_pinned(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     for (int far = 0; far < 2; far++) {
         maps_list l = maps_cone(8, 4, 3.3, 2 + (far ? 0.2 : 0.01), -0.01);
         qc_corner_map *map = maps_finish(ctx, &l);
@@ -140,12 +131,10 @@ static void cone_of_two_turns_is_pinned(void **state) {
         qc_object_release(grid);
         qc_object_release(map);
     }
-    qc_ctx_free(ctx);
 }
 
 static void folds_are_counted(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     maps_rng r = {5};
     maps_list l = maps_plane(6, 4, 4, 0, 0.3, 0, 0, &r);
     const int32_t inner = 3 * 7 + 3;
@@ -162,13 +151,11 @@ static void folds_are_counted(void **state) {
     assert_int_equal(qc_ctx_error(ctx)->where, grid->first_flipped);
     qc_object_release(grid);
     qc_object_release(map);
-    qc_ctx_free(ctx);
 }
 
 /* Faces thinner than a grid unit: rounding flattens or flips them, the repair turns them round. */
 static void slivers_are_repaired(void **state) {
-    (void)state;
-    qc_ctx *ctx = maps_context();
+    qc_ctx *ctx = *state;
     for (int trial = 0; trial < 20; trial++) {
         maps_rng r = {(uint64_t)trial};
         const int k = 6;
@@ -192,7 +179,6 @@ static void slivers_are_repaired(void **state) {
         qc_object_release(grid);
         qc_object_release(map);
     }
-    qc_ctx_free(ctx);
 }
 
 int main(void) {
@@ -205,5 +191,5 @@ int main(void) {
         cmocka_unit_test(folds_are_counted),
         cmocka_unit_test(slivers_are_repaired),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

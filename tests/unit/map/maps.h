@@ -31,6 +31,16 @@ static inline qc_ctx *maps_context(void) {
     return ctx;
 }
 
+static inline int set_up(void **state) {
+    *state = maps_context();
+    return 0;
+}
+
+static inline int tear_down(void **state) {
+    qc_ctx_free(*state);
+    return 0;
+}
+
 #define maps_ok(ctx, call)                                                                         \
     do {                                                                                           \
         if ((call) != QC_OK) fail_msg("%s", qc_ctx_error(ctx)->text);                              \

@@ -228,15 +228,6 @@ static void random_maps(void **state) {
                   n.refused, n.unfolded, n.folded, n.broken, n.open);
 }
 
-static int set_up(void **state) {
-    *state = maps_context();
-    return 0;
-}
-static int tear_down(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_maps),

@@ -82,15 +82,6 @@ static void thrown_maps_are_untangled_along_features(void **state) {
         }
 }
 
-static int set_up(void **state) {
-    *state = maps_context();
-    return 0;
-}
-static int tear_down(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(thrown_maps_are_untangled_along_features),

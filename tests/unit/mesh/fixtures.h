@@ -1,5 +1,5 @@
-/* Small meshes for the tests of sdk/mesh: voxel sets (any genus, any number of components), a
- * rectangular grid which may be closed to an annulus or a torus, and a context. */
+/* Small meshes for the tests of sdk/mesh: voxel sets (any genus, any number of components) and a
+ * rectangular grid which may be closed to an annulus or a torus. */
 #ifndef QC_TEST_MESH_FIXTURES_H
 #define QC_TEST_MESH_FIXTURES_H
 
@@ -14,21 +14,11 @@
 #include <cmocka.h>
 #include <qc/mesh.h>
 
+#include "unit/context.h"
+
 static const double PI = 3.14159265358979323846;
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
-
-static inline int set_up(void **state) {
-    qc_ctx *ctx = NULL;
-    if (qc_ctx_create(NULL, &ctx) != QC_OK) return -1;
-    *state = ctx;
-    return 0;
-}
-
-static inline int tear_down(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
 
 /* n x m cells; wrap bit 1 closes the first direction, bit 2 the second. scale multiplies positions.
  * A torus of revolution, a cylinder, or a flat square. */

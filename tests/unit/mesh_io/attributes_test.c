@@ -243,5 +243,5 @@ int main(void) {
         cmocka_unit_test(odd_names),
         cmocka_unit_test(refusals),
     };
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -220,5 +220,5 @@ int main(void) {
         cmocka_unit_test(test_truncated), cmocka_unit_test(test_binary_values),
         cmocka_unit_test(test_stl),       cmocka_unit_test(test_files),
         cmocka_unit_test(test_cancelled)};
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -1,4 +1,4 @@
-/* Shared by the tests of reading, writing and repair: contexts, parsing literals, expecting errors.
+/* Shared by the tests of reading, writing and repair: parsing literals, expecting errors.
  */
 #ifndef QC_TESTS_MESH_IO_COMMON_H
 #define QC_TESTS_MESH_IO_COMMON_H
@@ -13,17 +13,7 @@
 
 #include <qc/mesh.h>
 
-static inline int setup(void **state) {
-    qc_ctx *ctx = NULL;
-    if (qc_ctx_create(NULL, &ctx) != QC_OK) return -1;
-    *state = ctx;
-    return 0;
-}
-
-static inline int teardown(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
+#include "unit/context.h"
 
 /* Parses a copy which ends exactly with the data, so that reading beyond it is found. */
 static inline qc_status parse_bytes(qc_ctx *ctx, const void *data, size_t size, const char *name,

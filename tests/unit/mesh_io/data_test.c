@@ -46,5 +46,5 @@ int main(void) {
     const int skip = test_data_missing();
     if (skip) return skip;
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_all)};
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

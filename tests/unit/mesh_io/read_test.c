@@ -147,5 +147,5 @@ int main(void) {
         cmocka_unit_test(test_cube),         cmocka_unit_test(test_obj_corners),
         cmocka_unit_test(test_obj_layout),   cmocka_unit_test(test_off_headers),
         cmocka_unit_test(test_stl_variants), cmocka_unit_test(test_ply_line_ends)};
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -342,5 +342,5 @@ int main(void) {
                                        cmocka_unit_test(test_unreferenced_and_small),
                                        cmocka_unit_test(test_random_soups),
                                        cmocka_unit_test(test_names)};
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

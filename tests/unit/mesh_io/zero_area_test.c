@@ -156,5 +156,5 @@ int main(void) {
         cmocka_unit_test(test_cap),      cmocka_unit_test(test_thin_cap),
         cmocka_unit_test(test_needle),   cmocka_unit_test(test_zero_edge),
         cmocka_unit_test(test_boundary), cmocka_unit_test(test_many_caps)};
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -13,17 +13,7 @@
 #include <cmocka.h>
 #include <qc/shape.h>
 
-static inline int set_up(void **state) {
-    qc_ctx *ctx = NULL;
-    if (qc_ctx_create(NULL, &ctx) != QC_OK) return -1;
-    *state = ctx;
-    return 0;
-}
-
-static inline int tear_down(void **state) {
-    qc_ctx_free(*state);
-    return 0;
-}
+#include "unit/context.h"
 
 static inline qc_mesh *shape(qc_ctx *ctx, const char *name, const qc_shape_options *options) {
     qc_mesh *m = NULL;
