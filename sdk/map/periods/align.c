@@ -1,5 +1,6 @@
 /* The aligned map nearest to a seamless map (see align.h). */
 #include "sdk/map/periods/align.h"
+#include "sdk/map/periods/period_factor.h"
 #include <math.h>
 #include <string.h>
 
@@ -9,32 +10,39 @@ static double dot(int64_t n, const double *a, const double *b) {
     return sum;
 }
 
-/* y -= P^-1 slope by conjugate gradients, scaled by the diagonal: P is semidefinite where a period
- * moves nothing. r, d, Pd: n each; r enters as the slope. */
-static void descend(int64_t n, const double *P, double *r, double *d, double *Pd, double *y) {
+enum { ITERATIONS = 50 }; /* of the refinement, at most; a few are enough */
+
+/* y -= P^-1 slope by conjugate gradients, preconditioned by the factor of P with a shift: P is
+ * semidefinite where a period moves nothing. r, d, Pd, s: n each; r enters as the slope. */
+static qc_status descend(qc_ctx *ctx, int32_t n, const double *P, double *r, double *d, double *Pd,
+                         double *s, double *y) {
+    qc__period_factor factor;
+    qc_status status = qc__period_factor_create(ctx, n, P, &factor);
+    if (status != QC_OK) return status;
     double rho = 0, first = 0;
-    for (int64_t k = 0; k < 4 * n + 50; k++) {
-        double next = 0;
-        for (int64_t i = 0; i < n; i++)
-            if (P[i + i * n] > 0) next += r[i] * r[i] / P[i + i * n];
+    for (int k = 0; k < ITERATIONS; k++) {
+        memcpy(s, r, sizeof *s * (size_t)n);
+        status = qc_solve_real(ctx, factor.factor, 1, s);
+        const double next = dot(n, r, s);
         if (k == 0) first = next;
-        if (!(next > 1e-28 * first)) return;
-        for (int64_t i = 0; i < n; i++)
-            d[i] = (P[i + i * n] > 0 ? r[i] / P[i + i * n] : 0) + (k > 0 ? next / rho * d[i] : 0);
+        if (status != QC_OK || !(next > 1e-28 * first)) break;
+        for (int64_t i = 0; i < n; i++) d[i] = s[i] + (k > 0 ? next / rho * d[i] : 0);
         rho = next;
         for (int64_t i = 0; i < n; i++) Pd[i] = dot(n, P + i * n, d);
         const double curvature = dot(n, d, Pd);
-        if (!(curvature > 0)) return;
+        if (!(curvature > 0)) break;
         const double step = rho / curvature;
         for (int64_t i = 0; i < n; i++) {
             y[i] -= step * d[i];
             r[i] -= step * Pd[i];
         }
     }
+    qc__period_factor_free(&factor);
+    return status;
 }
 
 typedef struct work {
-    double *slope, *direction, *image;     /* n_free */
+    double *slope, *direction, *image, *s; /* n_free */
     double *symbol;                        /* n_symbols */
     qc_complex *deviation;                 /* 3 n_faces: df - z */
     double _Complex *load, *given, *wedge; /* n_wedges */
@@ -64,8 +72,9 @@ static qc_status align(qc_ctx *ctx, const qc__periods *p, const double *P, const
         status = solve(ctx, p, y, w);
         if (status == QC_OK)
             status = qc__periods_slope(ctx, p, w->wedge, w->load, w->change, w->slope);
+        if (status == QC_OK)
+            status = descend(ctx, s->n_free, P, w->slope, w->direction, w->image, w->s, y);
         if (status != QC_OK) return status;
-        descend(s->n_free, P, w->slope, w->direction, w->image, y);
     }
     status = solve(ctx, p, y, w);
     if (status != QC_OK) return status;
@@ -82,6 +91,7 @@ qc_status qc__align(qc_ctx *ctx, const qc__periods *periods, const double *P, co
     work w = {QC__NEW(ctx, double, s->n_free),
               QC__NEW(ctx, double, s->n_free),
               QC__NEW(ctx, double, s->n_free),
+              QC__NEW(ctx, double, s->n_free),
               QC__NEW(ctx, double, qc__seams_symbols(s)),
               QC__NEW(ctx, qc_complex, n_corners),
               QC__NEW(ctx, double _Complex, s->n_wedges),
@@ -90,11 +100,11 @@ qc_status qc__align(qc_ctx *ctx, const qc__periods *periods, const double *P, co
               QC__NEW(ctx, double _Complex, s->mesh->n_vertices),
               QC__NEW(ctx, double _Complex, s->mesh->n_vertices)};
     qc_status status = QC_ERR_NOMEM;
-    if (w.slope && w.direction && w.image && w.symbol && w.deviation && w.load && w.given &&
+    if (w.slope && w.direction && w.image && w.s && w.symbol && w.deviation && w.load && w.given &&
         w.wedge && w.F && w.change)
         status = align(ctx, periods, P, z, f, y, &w);
-    void *const blocks[] = {w.slope, w.direction, w.image, w.symbol, w.deviation,
-                            w.load,  w.given,     w.wedge, w.F,      w.change};
+    void *const blocks[] = {w.slope, w.direction, w.image, w.s, w.symbol, w.deviation,
+                            w.load,  w.given,     w.wedge, w.F, w.change};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

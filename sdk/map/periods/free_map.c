@@ -3,45 +3,12 @@
 #include "sdk/map/periods/free_map.h"
 #include <string.h>
 
-/* P is only semidefinite where a variable moves nothing, and where P comes from another norm. */
-static const double shift = 1e-9; /* of the diagonal, relative */
-
 void qc__free_map_free(qc__free_map *m) {
     if (!m) return;
-    qc_factor_free(m->factor);
-    qc_symbolic_free(m->symbolic);
+    qc__period_factor_free(&m->schur);
     void *const blocks[] = {m->base, m->symbol, m->slope, m->F, m->wedge, m->residual};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     qc__free(m);
-}
-
-/* The dense P as a sparse matrix of one supernode. */
-static qc_status factorise(qc_ctx *ctx, qc__free_map *m, const double *P) {
-    const int32_t n = m->periods->seams->n_free;
-    const int64_t entries = (int64_t)n * (n + 1) / 2, stride = n;
-    int64_t *colptr = QC__NEW(ctx, int64_t, n + 1), at = 0;
-    int32_t *row = QC__NEW(ctx, int32_t, entries);
-    double *value = QC__NEW(ctx, double, entries), largest = 0;
-    qc_status status = colptr && row && value ? QC_OK : QC_ERR_NOMEM;
-    for (int32_t j = 0; j < n; j++)
-        if (P[j + j * stride] > largest) largest = P[j + j * stride];
-    for (int32_t j = 0; j < n && status == QC_OK; j++) {
-        colptr[j] = at;
-        for (int32_t i = 0; i <= j; i++, at++) {
-            row[at] = i;
-            value[at] = P[i + j * stride] + (i == j ? shift * largest : 0);
-        }
-    }
-    if (status == QC_OK) {
-        colptr[n] = at;
-        const qc_symmetric A = {n, colptr, row, value};
-        status = qc_analyze_real(ctx, &A, NULL, &m->symbolic);
-        if (status == QC_OK) status = qc_factorize_real(ctx, m->symbolic, &A, &m->factor);
-    }
-    qc__free(colptr);
-    qc__free(row);
-    qc__free(value);
-    return status;
 }
 
 qc_status qc__free_map_create(qc_ctx *ctx, const qc__periods *periods, const double *P,
@@ -60,7 +27,8 @@ qc_status qc__free_map_create(qc_ctx *ctx, const qc__periods *periods, const dou
     m->residual = QC__NEW(ctx, double _Complex, s->n_wedges);
     qc_status status =
         m->base && m->symbol && m->slope && m->F && m->wedge && m->residual ? QC_OK : QC_ERR_NOMEM;
-    if (status == QC_OK && P && s->n_free > 0) status = factorise(ctx, m, P);
+    if (status == QC_OK && P && s->n_free > 0)
+        status = qc__period_factor_create(ctx, s->n_free, P, &m->schur);
     if (status != QC_OK) {
         qc__free_map_free(m);
         return status;
@@ -97,7 +65,7 @@ void qc__free_map_gradient(qc__free_map *m, const qc_complex *g, double *gradien
     for (int64_t c = 0; c < 3 * (int64_t)s->mesh->n_faces; c++)
         m->residual[s->corner_wedge[c]] += qc__complex(g[c]);
     qc__periods_pull_back(m->periods, m->residual, m->symbol, gradient, gradient + m->n_F);
-    if (!m->factor) memset(gradient + m->n_F, 0, sizeof *gradient * (size_t)s->n_free);
+    if (!m->schur.factor) memset(gradient + m->n_F, 0, sizeof *gradient * (size_t)s->n_free);
 }
 
 /* L a = p_F,  P dy = p_y - B^T a,  dF = a - L^-1 B dy. */
@@ -106,13 +74,13 @@ qc_status qc__free_map_precondition(qc_ctx *ctx, qc__free_map *m, double *p) {
     const qc__seams *s = periods->seams;
     double *y = p + m->n_F;
     qc_status status = qc__map_stiffness_solve(ctx, periods->stiffness, 1, p);
-    if (status != QC_OK || !m->factor) return status;
+    if (status != QC_OK || !m->schur.factor) return status;
     memset(m->wedge, 0, sizeof *m->wedge * (size_t)s->n_wedges);
     qc__periods_spread(periods, p, m->F);
     status = qc__periods_slope(ctx, periods, m->wedge, NULL, m->F, m->slope);
     if (status != QC_OK) return status;
     for (int32_t j = 0; j < s->n_free; j++) y[j] -= m->slope[j];
-    status = qc_solve_real(ctx, m->factor, 1, y);
+    status = qc_solve_real(ctx, m->schur.factor, 1, y);
     if (status != QC_OK) return status;
     qc__seams_symbol_values(s, y, m->symbol);
     qc__seams_wedge_values(s, m->symbol, m->wedge);

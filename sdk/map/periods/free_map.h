@@ -7,14 +7,13 @@
 #ifndef QC_MAP_FREE_MAP_H
 #define QC_MAP_FREE_MAP_H
 
-#include "sdk/map/periods/period_matrix.h"
+#include "sdk/map/periods/period_factor.h"
 
 typedef struct qc__free_map {
-    const qc__periods *periods; /* borrowed */
-    int64_t n_F, n;             /* unknown coordinates; with the variables after them */
-    double _Complex *base;      /* n_vertices: F where it is no unknown */
-    qc_symbolic *symbolic;      /* of P; NULL: y stays, its part of every gradient is 0 */
-    qc_factor *factor;
+    const qc__periods *periods;            /* borrowed */
+    int64_t n_F, n;                        /* unknown coordinates; with the variables after them */
+    double _Complex *base;                 /* n_vertices: F where it is no unknown */
+    qc__period_factor schur;               /* empty: y stays, its part of every gradient is 0 */
     double *symbol, *slope;                /* space */
     double _Complex *F, *wedge, *residual; /* space */
 } qc__free_map;

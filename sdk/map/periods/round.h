@@ -60,6 +60,8 @@ qc_status qc__round_try(qc__rounding *r, double scale, double wanted, double *qu
  * NULL = unknown. */
 qc_status qc__round_extend(qc__rounding *r, double scale, double wanted,
                            const qc_lattice_result *found, double *quads);
+/* Whether quantization is allowed and could be tried. */
+bool qc__round_can_quantize(const qc__rounding *r);
 /* The same by quantization (docs/theory/quantization.md), which replaces the best map. *done: false
  * where the aligned map is not positive, so that nothing was changed. */
 qc_status qc__round_quantized(qc__rounding *r, bool *done);

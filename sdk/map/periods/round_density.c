@@ -21,6 +21,7 @@ static double scale_factor(double wanted, double quads) {
 
 static qc_status meet_density(qc__rounding *r) {
     const double wanted = r->options.refine * r->seamless->sizing->target_quads;
+    const bool may_quantize = !r->options.trial && qc__round_can_quantize(r);
     double scale = sqrt(r->options.refine), middle = scale, quads = 0;
     if (wanted > 0 && r->P) {
         r->coarse = true;
@@ -37,6 +38,9 @@ static qc_status meet_density(qc__rounding *r) {
         if (qc__out_of_time(r->ctx) && r->best_miss <= qc__round_promised + qc__round_slack) break;
         const bool sound =
             r->best_collisions == 0 && (r->best_wrong == 0 || i + 1 >= WINDING_ROUNDS);
+        if (may_quantize &&
+            (r->best_collisions > FEW_COLLISIONS || (i + 1 >= NEWTON_ROUNDS && !sound)))
+            break;
         if (r->best_miss <= r->options.tolerance + qc__round_slack && sound) break;
         if (i < NEWTON_ROUNDS - 1) {
             scale *= scale_factor(wanted, quads);
@@ -92,9 +96,12 @@ qc_status qc__round_meet(qc__rounding *r) {
     qc_status status = always ? qc__round_quantized(r, &quantized) : QC_OK;
     if (status != QC_OK || quantized) return status;
     status = meet_density(r);
-    if (status == QC_OK && r->options.quantize == QC_QUANTIZE_WHERE_NEEDED && needs_quantization(r))
+    if (status == QC_OK && !always && qc__round_can_quantize(r) && needs_quantization(r)) {
         status = qc__round_quantized(r, &quantized);
-    if (quantized) return status;
+        if (status != QC_OK || quantized) return status;
+        r->options.quantize = QC_QUANTIZE_NEVER;
+        status = meet_refined(r, asked);
+    }
     const int32_t pairs = r->best_collisions, wrong = r->best_wrong;
     if (status != QC_OK || r->options.trial || !is_hopeless(r)) return status;
     const int32_t most = r->seams->n_levels > 0 ? ALIGNED_REFINEMENTS : REFINEMENTS;

@@ -185,11 +185,15 @@ static qc_status quantize(quantizing *q, bool *done) {
     return blend_imprint(q);
 }
 
+bool qc__round_can_quantize(const qc__rounding *r) {
+    return r->options.quantize != QC_QUANTIZE_NEVER && r->options.lattice == QC_LATTICE_QUADS &&
+           r->mesh->n_poles == 0 && r->seams->n_free > 0;
+}
+
 qc_status qc__round_quantized(qc__rounding *r, bool *done) {
     const int64_t n_faces = r->mesh->n_faces;
     *done = false;
-    if (r->options.lattice != QC_LATTICE_QUADS || r->mesh->n_poles > 0 || r->seams->n_free == 0)
-        return QC_OK;
+    if (!qc__round_can_quantize(r)) return QC_OK;
     quantizing q = {.r = r,
                     .uv = QC__NEW(r->ctx, int64_t, 6 * n_faces),
                     .values = QC__NEW(r->ctx, double, 6 * n_faces),

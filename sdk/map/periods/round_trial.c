@@ -63,8 +63,9 @@ static qc_status round_periods(qc__rounding *r, qc_lattice_result *result) {
         qc_status status =
             qc_lattice_round(r->ctx, n, r->P, r->target, &options, r->rounded, result);
         if (status == QC_OK)
-            status = qc__separate(r->ctx, r->separation, n, r->P, r->target, r->rounded,
-                                  &result->energy, &r->collisions);
+            status =
+                qc__separate(r->ctx, r->separation, n, r->P, r->target, !qc__round_can_quantize(r),
+                             r->rounded, &result->energy, &r->collisions);
         if (status != QC_OK) return status;
     } else {
         for (int32_t j = 0; j < n; j++) r->rounded[j] = rint(r->target[j]);

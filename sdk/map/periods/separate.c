@@ -12,6 +12,7 @@ typedef struct search {
     const qc__separation *s;
     int32_t n; /* variables */
     const double *P;
+    bool thorough;                 /* two steps at a time as well */
     double *z, *slope;             /* slope = P (z - t) */
     double _Complex *now, *wanted; /* forms of the pairs for z and for t */
     int64_t *pair_start;           /* pairs and coefficients by variable */
@@ -145,7 +146,7 @@ static qc_status remove_collisions(qc_ctx *ctx, search *q) {
             if (best_step(q, p, &a)) {
                 apply(q, a);
                 changed = true;
-            } else if (best_two_steps(q, p, &a, &b)) {
+            } else if (q->thorough && best_two_steps(q, p, &a, &b)) {
                 apply(q, a);
                 apply(q, b);
                 changed = true;
@@ -232,8 +233,10 @@ static qc_status prepare(qc_ctx *ctx, search *q, const double *t) {
 }
 
 qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_free,
-                       const double *P, const double *t, double *z, double *energy, int32_t *left) {
-    search q = {.s = separation, .n = n_free, .P = P, .z = z, .energy = *energy};
+                       const double *P, const double *t, bool thorough, double *z, double *energy,
+                       int32_t *left) {
+    search q = {
+        .s = separation, .n = n_free, .P = P, .thorough = thorough, .z = z, .energy = *energy};
     qc_status status = prepare(ctx, &q, t);
     if (status == QC_OK && count_collisions(&q) > 0) {
         status = find_near(ctx, &q);

@@ -29,9 +29,11 @@ qc_status qc__separation_create(qc_ctx *ctx, const qc__seams *seams, const int8_
 void qc__separation_free(qc__separation *separation);
 
 /* Moves integers z (n_free) with small energy 1/2 (z - t)^T P (z - t) until no pair collides.
- * *energy is updated; *left = pairs which still collide. P: n_free^2. */
+ * thorough: by two steps where one does not help, which takes long where many collide. *energy is
+ * updated; *left = pairs which still collide. P: n_free^2. */
 qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_free,
-                       const double *P, const double *t, double *z, double *energy, int32_t *left);
+                       const double *P, const double *t, bool thorough, double *z, double *energy,
+                       int32_t *left);
 /* The first pair which integers z let collide, where t has it apart; -1 = none. */
 int32_t qc__first_collision(const qc__separation *separation, const double *t, const double *z);
 

@@ -11,11 +11,13 @@
 
 enum {
     MOST_REFINEMENTS = 40, /* by sqrt(2): 2^20 */
-    DENSITY_ROUNDS = 8
+    DENSITY_ROUNDS = 8,
+    SCANS = 10
 };
-static const double good_miss = 0.02; /* of the number of quads */
+static const double good_miss = 0.02, fair_miss = 0.05; /* of the number of quads */
+static const double scan_step = 0.02;                   /* of the scale */
 /* Of a path which mends a violation; of others it is what they gain. */
-static const double mending_limit = 200;
+static const double mending_limit = 50;
 
 /* --- one move --------------------------------------------------------------------------------- */
 
@@ -147,23 +149,49 @@ static qc_status move_towards(qc__integers *q, double scale) {
     return descend(q);
 }
 
-/* Changes the scale until the number of quads is right; the best vectors are left in q->best. */
-static qc_status meet_quads(qc__integers *q, double scale, double quads) {
-    const size_t bytes = sizeof *q->x * 3 * (size_t)q->coarse->n_triangles;
-    double best = INFINITY;
-    for (int32_t i = 0;; i++) {
-        const double made = count_quads(q), miss = fabs(log(made / quads));
-        if (miss < best) {
-            memcpy(q->best, q->x, bytes);
-            best = miss;
-        }
-        if (best < good_miss || i == DENSITY_ROUNDS) break;
-        scale *= fmin(fmax(sqrt(quads / made), 0.5), 2);
-        const qc_status status = move_towards(q, scale);
+/* How far the number of quads is off. */
+static double miss(const qc__integers *q, double quads) {
+    return fabs(log(count_quads(q) / quads));
+}
+
+/* q->best becomes x where that is nearer to the number of quads. */
+static void keep_best(qc__integers *q, double quads, double *best) {
+    const double here = miss(q, quads);
+    if (q->violation > 0 || here >= *best) return;
+    memcpy(q->best, q->x, sizeof *q->x * 3 * (size_t)q->coarse->n_triangles);
+    *best = here;
+}
+
+/* Where few vectors jump together, from a scale to the next: starts anew at scales about this one.
+ */
+static qc_status scan_scales(qc__integers *q, double scale, double quads, double *best) {
+    for (int32_t k = 0; k<SCANS && * best> fair_miss; k++) {
+        bool closed;
+        qc__integers_aim(q, scale * (1 + scan_step * (k / 2 + 1) * (k % 2 ? -1 : 1)));
+        qc_status status = qc__integers_start(q, &closed);
         if (status != QC_OK) return status;
+        if (!closed) continue;
+        qc__integers_measure(q);
+        status = descend(q);
+        if (status != QC_OK) return status;
+        keep_best(q, quads, best);
     }
-    memcpy(q->x, q->best, bytes);
     return QC_OK;
+}
+
+/* Changes the scale until the number of quads is right; scan: as well as may be. */
+static qc_status meet_quads(qc__integers *q, double scale, double quads, bool scan) {
+    double best = INFINITY, at = scale;
+    keep_best(q, quads, &best);
+    for (int32_t i = 0; i < DENSITY_ROUNDS && best > good_miss; i++) {
+        at *= fmin(fmax(sqrt(quads / count_quads(q)), 0.5), 2);
+        const qc_status status = move_towards(q, at);
+        if (status != QC_OK) return status;
+        keep_best(q, quads, &best);
+    }
+    const qc_status status = scan ? scan_scales(q, scale, quads, &best) : QC_OK;
+    memcpy(q->x, q->best, sizeof *q->x * 3 * (size_t)q->coarse->n_triangles);
+    return status;
 }
 
 static qc_status search(qc__integers *q, double scale, double quads) {
@@ -171,8 +199,10 @@ static qc_status search(qc__integers *q, double scale, double quads) {
     qc__integers_aim(q, scale);
     qc_status status = qc__integers_weigh(q);
     if (status == QC_OK) status = find_feasible(q, scale, &times);
+    if (status != QC_OK) return status;
+    const bool at_once = times == 0; /* the wanted scale is not too coarse */
     while (status == QC_OK && times-- > 0) status = move_towards(q, finer(scale, times));
-    return status == QC_OK && quads > 0 ? meet_quads(q, scale, quads) : status;
+    return status == QC_OK && quads > 0 ? meet_quads(q, scale, quads, at_once) : status;
 }
 
 static qc_status allocate(qc__integers *q) {

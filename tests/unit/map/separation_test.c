@@ -241,7 +241,7 @@ static void separated_cones_do_not_collide(void **state) {
             const double start = energy_at(p, t, z);
             double energy = start;
             int32_t left = -1;
-            must(ctx, qc__separate(ctx, p->separation, p->n, p->P, t, z, &energy, &left));
+            must(ctx, qc__separate(ctx, p->separation, p->n, p->P, t, true, z, &energy, &left));
             for (int64_t j = 0; j < size; j++) assert_true(z[j] == rint(z[j]));
             const double wanted = energy_at(p, t, z);
             assert_true(fabs(energy - wanted) <= 1e-9 * (1 + wanted + start));
