@@ -138,7 +138,7 @@ static bool failed_early(const climb *c) {
 static bool worth_trying(const climb *c, rung next, rung before) {
     const qc__concessions *f = &c->given_up;
     if (!c->hard) return next.keep == GUIDES && !failed_early(c);
-    if (next.keep == ALL) return !failed_early(c) || wants_quantization(c, next);
+    if (next.keep == ALL) return !failed_early(c);
     if (next.keep == GUIDES) return before.keep != GUIDES || !failed_early(c);
     return f->n_gone < f->n;
 }

@@ -42,7 +42,7 @@ def parse():
     p.add_argument("--strict", action="store_true", help="status 1 unless all runs are good")
     a = p.parse_args()
     if a.quick:
-        a.modes, a.quads, a.only, a.meshes = "fast", "400", "shape sphere,shape ellipsoid", ""
+        a.modes, a.quads, a.only, a.meshes = "fast", "500", "shape sphere,shape ellipsoid", ""
     a.program = os.path.abspath(a.program)
     a.build = build_of(a.program)
     return a
