@@ -20,8 +20,10 @@ static const qc_param table[] = {
     QC_PARAM_BOOL(params, enabled, true, "false: only writes the map on the exact grid"),
     QC_PARAM_INT(params, rounds, 20, 1, 1000, "", "outer rounds for each neighbourhood"),
     QC_PARAM_INT(params, iterations, 200, 1, 100000, "", "L-BFGS iterations in a round"),
-    QC_PARAM_INT(params, relax, 50, 0, 100000, "",
-                 "then steps which even out what was moved, at most; every face stays positive"),
+    QC_PARAM_INT(
+        params, relax, 50, 0, 100000, "",
+        "then steps which even out what was moved or is distorted, at most; every face stays "
+        "positive"),
 };
 
 static qc_status run(const qc_run *r, const void *raw) {
@@ -31,17 +33,17 @@ static qc_status run(const qc_run *r, const void *raw) {
     qc_corner_map *result = NULL;
     qc_status status = qc_grid_map_create(r->ctx, map, 0, &before);
     if (status != QC_OK) return status;
-    if (p->enabled && before->n_flipped + before->n_degenerate > 0) {
+    const int32_t bad = before->n_flipped + before->n_degenerate;
+    if (p->enabled && (bad > 0 || p->relax > 0)) {
         qc_untangle_options options = QC_UNTANGLE_OPTIONS_INIT;
         options.max_rounds = (int32_t)p->rounds;
         options.max_iterations = (int32_t)p->iterations;
         options.relax = (int32_t)p->relax;
         status = qc_map_untangle(r->ctx, map, &options, &result);
-        if (status == QC_OK) status = qc_grid_map_create(r->ctx, result, 0, &after);
-        if (status == QC_OK) {
+        if (status == QC_OK && bad > 0) status = qc_grid_map_create(r->ctx, result, 0, &after);
+        if (after) {
             char text[160];
-            snprintf(text, sizeof text, "fold-overs at %d faces before, %d after",
-                     before->n_flipped + before->n_degenerate,
+            snprintf(text, sizeof text, "fold-overs at %d faces before, %d after", bad,
                      after->n_flipped + after->n_degenerate);
             r->log(r, QC_LOG_INFO, text);
         }
@@ -67,7 +69,8 @@ const qc_stage qc_stage_untangle = {
            "regularisation falls until every face is positively oriented by an exact integer test. "
            "Transitions and cones do not change. Neighbourhoods grow when they are too small. "
            "Where that "
-           "succeeds, what was moved is evened out by steps which keep every face positive.",
+           "succeeds, what was moved or is badly distorted is evened out by steps which keep every "
+           "face positive.",
     .cite = "Garanzha et al. 2021, Foldover-free maps in 50 lines of code",
     .in = in,
     .out = out,

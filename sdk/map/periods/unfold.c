@@ -243,7 +243,7 @@ static qc_status prepare_look(unfolder *u) {
     for (int64_t t = 0; t < mesh->n_faces; t++) {
         u->cross[t] = (qc_complex){1, 0};
         u->pull[t] = first_pull;
-        qc__target_hats(u->z + 3 * t, u->hat + 3 * t, u->area + t);
+        qc__target_hats(u->z + 3 * t, qc__thick_targets, u->hat + 3 * t, u->area + t);
     }
     u->guide = (qc__guide){r, u->rotation, u->cross, u->z};
     for (int32_t v = 0; v < mesh->n_vertices; v++)

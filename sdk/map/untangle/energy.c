@@ -4,7 +4,7 @@
 #include <string.h>
 
 qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
-                               qc_complex *hat, double *area) {
+                               double thinnest, qc_complex *hat, double *area) {
     const qc_status status = qc_tangent_edges(ctx, mesh, hat);
     if (status != QC_OK) return status;
     for (int32_t t = 0; t < mesh->n_faces; t++) {
@@ -13,7 +13,7 @@ qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_len
             e[k].re /= edge_length;
             e[k].im /= edge_length;
         }
-        qc__target_hats(e, e, area + t);
+        qc__target_hats(e, thinnest, e, area + t);
     }
     return QC_OK;
 }

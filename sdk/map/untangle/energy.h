@@ -23,9 +23,9 @@ typedef struct qc__patch {
     int64_t work_limit;
 } qc__patch;
 
-/* Target shapes: hat (3 n_faces), area (n_faces). */
+/* Target shapes, slivers thickened to `thinnest`: hat (3 n_faces), area (n_faces). */
 qc_status qc__untangle_targets(qc_ctx *ctx, const qc_mesh *mesh, double edge_length,
-                               qc_complex *hat, double *area);
+                               double thinnest, qc_complex *hat, double *area);
 /* det J of face t for the values of the map. */
 double qc__face_det(const qc__reduced_map *map, const qc_complex *hat, int32_t t);
 /* Energy and gradient at x (2 n_vertices). */

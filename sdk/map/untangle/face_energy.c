@@ -2,8 +2,7 @@
 #include "sdk/map/untangle/face_energy.h"
 #include <math.h>
 
-static const double theta = 0.5;     /* balance of shape and area                                 */
-static const double thinnest = 0.05; /* least height of a target shape over its longest edge */
+static const double theta = 0.5; /* balance of shape and area */
 
 static qc_complex times(qc_complex a, qc_complex b) {
     const qc_complex c = {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
@@ -11,7 +10,7 @@ static qc_complex times(qc_complex a, qc_complex b) {
 }
 
 /* Thickens a sliver: keeps its longest edge and the foot of its height. */
-static void thicken(qc_complex e[3]) {
+static void thicken(qc_complex e[3], double thinnest) {
     int32_t k = 0;
     for (int32_t i = 1; i < 3; i++)
         if (hypot(e[i].re, e[i].im) > hypot(e[k].re, e[k].im)) k = i;
@@ -25,9 +24,9 @@ static void thicken(qc_complex e[3]) {
     e[(k + 2) % 3] = (qc_complex){-e[k].re - side.re, -e[k].im - side.im};
 }
 
-void qc__target_hats(const qc_complex edge[3], qc_complex hat[3], double *area) {
+void qc__target_hats(const qc_complex edge[3], double thinnest, qc_complex hat[3], double *area) {
     qc_complex e[3] = {edge[0], edge[1], edge[2]};
-    thicken(e);
+    thicken(e, thinnest);
     const double twice = e[0].re * e[1].im - e[0].im * e[1].re;
     *area = 0.5 * twice;
     for (int32_t k = 0; k < 3; k++) /* grad phi_k = J e_k / 2A */

@@ -8,9 +8,14 @@
 
 #include "sdk/base/internal.h"
 
+/* Least height of target shapes over their longest edge: thick while faces are turned over, since
+ * slivers are stiff; thin where slivers are to count as little as their area. */
+static const double qc__thick_targets = 0.05, qc__thin_targets = 1e-3;
+
 /* The target shape with counter-clockwise edge vectors (edge k opposite to corner k), slivers
- * thickened: gradients of the hat functions of its corners, and its area. hat may be edge. */
-void qc__target_hats(const qc_complex edge[3], qc_complex hat[3], double *area);
+ * thickened to `thinnest`: gradients of the hat functions of its corners, and its area. hat may be
+ * edge. */
+void qc__target_hats(const qc_complex edge[3], double thinnest, qc_complex hat[3], double *area);
 
 /* det J for corner values f. */
 double qc__jacobian_det(const qc_complex hat[3], const qc_complex f[3]);

@@ -50,10 +50,9 @@ static double unit_length(const qc_corner_map *map) {
 static qc_status make_guide(untangler *u, const qc_corner_map *map) {
     const qc_status status = qc_tangent_edges(u->ctx, u->mesh, u->edge);
     if (status != QC_OK) return status;
-    const double unit = unit_length(map);
     for (int64_t c = 0; c < 3 * (int64_t)u->mesh->n_faces; c++) {
-        u->edge[c].re /= unit;
-        u->edge[c].im /= unit;
+        u->edge[c].re /= u->unit;
+        u->edge[c].im /= u->unit;
     }
     u->guide = (qc__guide){u->map, u->rotation, map->cross, u->edge};
     return QC_OK;
@@ -80,11 +79,13 @@ static void pin_full_turns(untangler *u) {
 static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_map *grid) {
     u->rotation = grid->rotation;
     u->axis = grid->axis;
+    u->unit = unit_length(map);
     qc_status status = qc__reduced_map_create(u->ctx, grid, map->uv, true, &u->target);
     if (status == QC_OK) status = qc__reduced_map_create(u->ctx, grid, map->uv, true, &u->map);
     if (status == QC_OK) status = allocate(u);
     if (status == QC_OK)
-        status = qc__untangle_targets(u->ctx, map->mesh, unit_length(map), u->hat, u->area);
+        status =
+            qc__untangle_targets(u->ctx, map->mesh, u->unit, qc__thick_targets, u->hat, u->area);
     if (status == QC_OK) status = make_guide(u, map);
     if (status == QC_OK) pin_full_turns(u);
     return status;
@@ -123,7 +124,8 @@ static qc_status corners_of(untangler *u, const qc_corner_map *like, qc_corner_m
     return QC_OK;
 }
 
-/* The exact grid of the moved map; a state the grid refuses gives way to the one before. */
+/* The exact grid of the moved map; a state which the grid refuses, or which has more fold-overs on
+ * it, gives way to the one before. */
 static qc_status exact_result(untangler *u, const qc_corner_map *map, const qc_grid_map *before,
                               qc_corner_map **out) {
     qc_corner_map *moved = NULL;
@@ -136,14 +138,18 @@ static qc_status exact_result(untangler *u, const qc_corner_map *map, const qc_g
         status = QC_OK;
         qc__clear_error(u->ctx);
     }
+    const bool better =
+        after && after->n_flipped + after->n_degenerate <= before->n_flipped + before->n_degenerate;
     if (status == QC_OK)
-        status = qc_grid_map_to_corner_map(u->ctx, after ? after : before, map, out);
+        status = qc_grid_map_to_corner_map(u->ctx, better ? after : before, map, out);
     qc_object_release(after);
     return status;
 }
 
-static bool is_mended(untangler *u) {
-    return qc__mark_neighbourhood(u, 0) == 0;
+static bool is_positive(const untangler *u) {
+    for (int32_t t = 0; t < u->mesh->n_faces; t++)
+        if (!(qc__face_det(u->map, u->hat, t) > 0)) return false;
+    return true;
 }
 
 qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map, const qc_untangle_options *options,
@@ -158,14 +164,13 @@ qc_status qc_map_untangle(qc_ctx *ctx, const qc_corner_map *map, const qc_untang
     if (status != QC_OK) return status;
     status = prepare(&u, map, before);
     int32_t bad = 0;
-    if (status == QC_OK) bad = qc__mark_neighbourhood(&u, 0);
-    const int32_t bad_before = bad;
+    if (status == QC_OK && before->n_flipped + before->n_degenerate > 0)
+        bad = qc__mark_neighbourhood(&u, 0);
     u.work_limit = walk_effort * map->mesh->n_faces;
     if (status == QC_OK && bad > 0 && map->relaxed) status = qc__untangle_continue(&u, map, before);
     u.work_limit = u.work + end_effort * map->mesh->n_faces;
     if (status == QC_OK && bad > 0) status = qc__untangle_growing(&u, QC__GROWTHS, 0.8, 1.0, &bad);
-    if (status == QC_OK && bad_before > 0 && u.options.relax > 0 && is_mended(&u))
-        status = qc__relax_moved(&u);
+    if (status == QC_OK && u.options.relax > 0 && is_positive(&u)) status = qc__relax_uneven(&u);
     if (status == QC_OK) status = exact_result(&u, map, before, out);
     qc_object_release(before);
     release(&u);

@@ -16,6 +16,7 @@ typedef struct qc__untangler {
     qc__reduced_map *map;    /* moves */
     qc__reduced_map *target; /* the rounded map */
     qc__guide guide;         /* cross NULL: the map does not tell         */
+    double unit;             /* length of a parameter unit */
     qc_complex *edge;
     qc_complex *hat;
     double *area;
@@ -56,11 +57,12 @@ bool qc__untangle_exhausted(const qc__untangler *u);
 qc_status qc__untangle_growing(qc__untangler *u, int32_t growths, double lo, double hi,
                                int32_t *bad);
 
-/* --- moved.c: what was moved --- */
+/* --- uneven.c: what was moved or is distorted --- */
 
-/* Lowers the symmetric Dirichlet energy over what untangling moved: no face collapses on the way,
- * so none is turned over and no cone changes its winding. */
-qc_status qc__relax_moved(qc__untangler *u);
+/* Lowers the symmetric Dirichlet energy over what untangling moved and where the map, whose faces
+ * are positive, is distorted: no face collapses on the way, so none is turned over and no cone
+ * changes its winding. */
+qc_status qc__relax_uneven(qc__untangler *u);
 
 /* --- continuation.c: from the map before rounding --- */
 

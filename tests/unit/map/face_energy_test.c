@@ -41,7 +41,7 @@ static void gradients_are_slopes(void **state) {
             double area;
             positive_triangle(&random, target);
             edges_of(target, e);
-            qc__target_hats(e, hat, &area);
+            qc__target_hats(e, qc__thick_targets, hat, &area);
             if (kind == 2)
                 positive_triangle(&random, f);
             else
@@ -68,7 +68,7 @@ static void targets_are_minima(void **state) {
         double area;
         positive_triangle(&random, f);
         edges_of(f, e);
-        qc__target_hats(e, hat, &area);
+        qc__target_hats(e, qc__thick_targets, hat, &area);
         assert_true(fabs(qc__jacobian_det(hat, f) - 1) < 1e-9 ||
                     fabs(area - 0.5 * twice_area(f)) > 1e-9); /* the latter: thickened */
         if (fabs(area - 0.5 * twice_area(f)) > 1e-9) continue;

@@ -233,7 +233,8 @@ static double distortion(const clean *k, const qc_corner_map *map) {
     const int64_t n = k->s->mesh->n_faces;
     qc_complex *hat = ARRAY(qc_complex, 3 * n);
     double *area = ARRAY(double, n), energy = 0;
-    must(k->s->ctx, qc__untangle_targets(k->s->ctx, k->s->mesh, map->edge_length, hat, area));
+    must(k->s->ctx, qc__untangle_targets(k->s->ctx, k->s->mesh, map->edge_length, qc__thin_targets,
+                                         hat, area));
     for (int64_t t = 0; t < n; t++) {
         qc_complex f[3], g[3];
         for (int i = 0; i < 3; i++)
@@ -275,12 +276,55 @@ static void what_was_moved_is_evened_out(void **state) {
     qc_ctx_free(ctx);
 }
 
+static double evened(const clean *k, const qc_corner_map *map, int32_t steps) {
+    qc_untangle_options options = QC_UNTANGLE_OPTIONS_INIT;
+    qc_corner_map *out = NULL;
+    options.relax = steps;
+    must(k->s->ctx, qc_map_untangle(k->s->ctx, map, &options, &out));
+    qc_grid_map *grid = grid_of(k->s->ctx, out);
+    assert_int_equal(grid->n_flipped + grid->n_degenerate, 0);
+    assert_same_seams(k, grid);
+    const double energy = distortion(k, out);
+    qc_object_release(grid);
+    qc_object_release(out);
+    return energy;
+}
+
+/* A map which is squashed but nowhere folded is evened out too. */
+static void what_is_distorted_is_evened_out(void **state) {
+    (void)state;
+    qc_ctx *ctx = context(1);
+    uint64_t random = 5;
+    int better = 0;
+    for (int i = 0; i < N_CASES; i++) {
+        clean *k = clean_create(ctx, &CASES[i], 600);
+        qc_corner_map *squashed = NULL;
+        for (double by = 1; !squashed; by *= 0.9) {
+            double *uv = scrambled(k, k->s->mesh->n_vertices / 3, 4, by, &random);
+            qc_corner_map *map = with_values(ctx, k->map, k->grid->rotation, uv);
+            qc_grid_map *grid = grid_of(ctx, map);
+            if (grid->n_flipped + grid->n_degenerate == 0) squashed = map;
+            if (!squashed) qc_object_release(map);
+            qc_object_release(grid);
+            free(uv);
+        }
+        const double before = evened(k, squashed, 0), after = evened(k, squashed, 50);
+        assert_true(after <= before * (1 + 1e-6));
+        better += after < 0.99 * before;
+        qc_object_release(squashed);
+        clean_free(k);
+    }
+    assert_true(better > 0);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(clean_maps_come_back_to_the_last_bit),
         cmocka_unit_test(scrambled_maps_are_untangled),
         cmocka_unit_test(a_wholly_scrambled_sphere_is_untangled),
         cmocka_unit_test(what_was_moved_is_evened_out),
+        cmocka_unit_test(what_is_distorted_is_evened_out),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(without_iterations_the_best_map_is_returned),
     };
