@@ -1,9 +1,13 @@
-/* Search for a better place of a vertex next to a bad quad: the worst quad at it is made as good as
- * moves in a few directions can make it (optimisation-based smoothing of the worst element: Freitag
- * and Ollivier-Gooch, Tetrahedral mesh improvement using swapping and smoothing, 1997). */
+/* Search for a better place of a vertex next to a bad quad, among moves in a few directions: where
+ * the worst quad at it is best, or where a high power of what the quads at it lack is least
+ * (optimisation-based smoothing: Freitag and Ollivier-Gooch, Tetrahedral mesh improvement using
+ * swapping and smoothing, 1997). The worst alone gets stuck where several vertices would have to
+ * move at once; the sum, being smooth, does not. */
 #include "sdk/finish/internal.h"
 
-enum { DIRECTIONS = 8, LENGTHS = 4 };
+/* Times the quality wanted: below it all quads are regarded first. */
+static const double hopeless = 0.3;
+enum { DIRECTIONS = 8, LENGTHS = 6 };
 
 /* Axes of the plane of a face. */
 static void plane(const double normal[3], double u[3], double v[3]) {
@@ -33,11 +37,18 @@ static bool direction(const qc__relaxation *r, int32_t v, int i, double d[3]) {
     return true;
 }
 
-void qc__improve_worst(qc__relaxation *r, int32_t v) {
+/* What is made less, were v at x. */
+typedef double measure(const qc__relaxation *r, int32_t v, const double x[3]);
+
+static double worst(const qc__relaxation *r, int32_t v, const double x[3]) {
+    return -qc__ring_quality(r, v, x);
+}
+
+static void improve(qc__relaxation *r, int32_t v, double enough, measure *bad) {
+    const double *now = r->position + 3 * (int64_t)v;
     if (r->anchor[v] == QC__FIXED || r->around.face_start[v] == r->around.face_start[v + 1]) return;
-    double best = qc__ring_quality(r, v, r->position + 3 * (int64_t)v),
-           length = 0.4 * qc__size_at(r, v);
-    if (best >= r->quality) return;
+    if (qc__ring_quality(r, v, now) >= enough) return;
+    double best = bad(r, v, now), length = 0.4 * qc__size_at(r, v);
     qc__spot place;
     bool found = false;
     for (int n = 0; n < LENGTHS; n++, length *= 0.5) {
@@ -46,12 +57,21 @@ void qc__improve_worst(qc__relaxation *r, int32_t v) {
             qc__spot spot;
             for (int k = 0; k < 3; k++) d[k] *= length;
             if (!qc__step(r, v, d, &spot)) continue;
-            const double q = qc__ring_quality(r, v, spot.x);
-            if (q <= best) continue;
-            best = q;
+            const double b = bad(r, v, spot.x);
+            if (b >= best || qc__ring_quality(r, v, spot.x) < r->least) continue;
+            if (qc__ring_turns(r, v, spot.x)) continue;
+            best = b;
             place = spot;
             found = true;
         }
     }
     if (found) qc__place(r, v, &place);
+}
+
+void qc__improve_all(qc__relaxation *r, int32_t v) {
+    improve(r, v, hopeless * r->quality, qc__ring_badness);
+}
+
+void qc__improve_worst(qc__relaxation *r, int32_t v) {
+    improve(r, v, r->quality, worst);
 }

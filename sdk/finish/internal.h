@@ -95,6 +95,7 @@ typedef struct qc__relaxation {
                                  rectangle wanted, 0 = a square */
     qc__rectangle *rectangle; /* n_faces: of that ratio */
     double *scratch;          /* n_faces */
+    double least;             /* scaled Jacobian below which improvements make no quad */
     uint8_t *pinned;          /* n_vertices: 1 next to the largest gaps between quads and surface */
 } qc__relaxation;
 
@@ -116,7 +117,12 @@ void qc__square_target(const qc__relaxation *r, int32_t v, double target[3]);
 
 /* Least scaled Jacobian of the quads at v, were v at x. Thread: any, nothing is written. */
 double qc__ring_quality(const qc__relaxation *r, int32_t v, const double x[3]);
-/* Whether no quad at v gets worse than min(quality, what it is now), were v at x. */
+/* Sum over the quads at v of (1 - scaled Jacobian)^8, likewise. */
+double qc__ring_badness(const qc__relaxation *r, int32_t v, const double x[3]);
+/* Whether a quad at v would face away from the surface, and more than now, were v at x. */
+bool qc__ring_turns(const qc__relaxation *r, int32_t v, const double x[3]);
+/* Whether no quad at v gets worse than min(quality, what it is now), and none turns, were v at x.
+ */
 bool qc__ring_allows(const qc__relaxation *r, int32_t v, const double x[3]);
 /* The spot nearest to v's own moved by d; false where the surface there faces away. */
 bool qc__step(const qc__relaxation *r, int32_t v, const double d[3], qc__spot *out);
@@ -125,8 +131,10 @@ void qc__place(qc__relaxation *r, int32_t v, const qc__spot *spot);
 typedef void qc__visit(qc__relaxation *r, int32_t v);
 qc_status qc__visit_all(qc_ctx *ctx, qc__relaxation *r, qc__visit *visit);
 
-/* Visits: one step towards the squares; a search for a better place next to bad quads. */
+/* Visits: one step towards the squares; searches for a better place next to bad quads, with regard
+ * to all quads there, or to the worst. */
 void qc__towards_squares(qc__relaxation *r, int32_t v);
+void qc__improve_all(qc__relaxation *r, int32_t v);
 void qc__improve_worst(qc__relaxation *r, int32_t v);
 
 #endif

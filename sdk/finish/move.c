@@ -4,6 +4,8 @@
 enum { CHUNK = 64, HALVINGS = 3 };
 /* In edge lengths. */
 #define LEAST_STEP 1e-3
+/* Cosine to the surface below which a quad faces away from it instead of bending around it. */
+static const double turned = -0.3;
 
 /* Scaled Jacobian of quad f with its corner k at x. */
 static double quality_with(const qc__relaxation *r, int32_t f, int k, const double *x) {
@@ -24,6 +26,43 @@ double qc__ring_quality(const qc__relaxation *r, int32_t v, const double x[3]) {
     return least;
 }
 
+double qc__ring_badness(const qc__relaxation *r, int32_t v, const double x[3]) {
+    double sum = 0;
+    for (int32_t i = r->around.face_start[v]; i < r->around.face_start[v + 1]; i++) {
+        const double q = quality_with(r, r->around.face[i] / 4, r->around.face[i] & 3, x);
+        const double square = (1 - q) * (1 - q), fourth = square * square;
+        sum += fourth * fourth;
+    }
+    return sum;
+}
+
+/* Cosine between the area vector of quad f and the surface about it, with its corner k at x. */
+static double side(const qc__relaxation *r, int32_t f, int k, const double *x) {
+    const int32_t *v = r->quads->face_vertex + 4 * (int64_t)f;
+    const double *p[4];
+    double d[2][3], area[3], normal[3] = {0, 0, 0};
+    for (int i = 0; i < 4; i++) p[i] = i == k ? x : r->position + 3 * (int64_t)v[i];
+    for (int j = 0; j < 3; j++) {
+        d[0][j] = p[2][j] - p[0][j];
+        d[1][j] = p[3][j] - p[1][j];
+        for (int i = 0; i < 4; i++) normal[j] += r->normal[3 * (int64_t)r->spot[v[i]].face + j];
+    }
+    qc__cross3(d[0], d[1], area);
+    const double scale = qc__norm3(area) * qc__norm3(normal);
+    return scale > 0 ? qc__dot3(area, normal) / scale : 0;
+}
+
+bool qc__ring_turns(const qc__relaxation *r, int32_t v, const double x[3]) {
+    const double *now = r->position + 3 * (int64_t)v;
+    for (int32_t i = r->around.face_start[v]; i < r->around.face_start[v + 1]; i++) {
+        const int32_t f = r->around.face[i] / 4;
+        const int k = r->around.face[i] & 3;
+        const double there = side(r, f, k, x);
+        if (there < turned && there < side(r, f, k, now)) return true;
+    }
+    return false;
+}
+
 bool qc__ring_allows(const qc__relaxation *r, int32_t v, const double x[3]) {
     const double *now = r->position + 3 * (int64_t)v;
     for (int32_t i = r->around.face_start[v]; i < r->around.face_start[v + 1]; i++) {
@@ -32,7 +71,7 @@ bool qc__ring_allows(const qc__relaxation *r, int32_t v, const double x[3]) {
         const double q = quality_with(r, f, k, x);
         if (q < r->quality && q < quality_with(r, f, k, now)) return false;
     }
-    return true;
+    return !qc__ring_turns(r, v, x);
 }
 
 bool qc__step(const qc__relaxation *r, int32_t v, const double d[3], qc__spot *out) {

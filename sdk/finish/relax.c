@@ -4,7 +4,7 @@
 
 #include "sdk/finish/internal.h"
 
-enum { IMPROVE_ROUNDS = 10 };
+enum { IMPROVE_ROUNDS = 10 /* of each kind in turn */ };
 
 /* In edge lengths: a gap which does not count. */
 #define NO_GAP 1e-3
@@ -109,12 +109,23 @@ static void restart(qc__relaxation *r, const qc__spot *start) {
     memcpy(r->spot, start, n * sizeof *r->spot);
 }
 
+static double least_quality(const qc__relaxation *r) {
+    double least = 1;
+    for (int32_t f = 0; f < r->quads->n_faces; f++)
+        least = fmin(least,
+                     qc__scaled_jacobian(r->position, r->quads->face_vertex + 4 * (int64_t)f, 4));
+    return least;
+}
+
 static qc_status iterate(qc_ctx *ctx, int32_t rounds, qc__relaxation *r) {
-    const int32_t n = rounds + IMPROVE_ROUNDS;
+    qc__visit *const kind[] = {qc__towards_squares, qc__improve_all, qc__improve_worst};
+    const int32_t n = rounds + 2 * IMPROVE_ROUNDS;
     qc_status status = QC_OK;
     for (int32_t i = 0; i < n && status == QC_OK; i++) {
         const qc__range outer = qc__range_begin(ctx, NULL, (double)i / n, (i + 1.0) / n);
-        status = qc__visit_all(ctx, r, i < rounds ? qc__towards_squares : qc__improve_worst);
+        const int32_t phase = i < rounds ? 0 : 1 + (i - rounds) / IMPROVE_ROUNDS;
+        if (phase > 0 && (i - rounds) % IMPROVE_ROUNDS == 0) r->least = least_quality(r);
+        status = qc__visit_all(ctx, r, kind[phase]);
         qc__range_end(ctx, outer);
     }
     return status;

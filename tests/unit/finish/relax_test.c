@@ -98,6 +98,33 @@ static void no_quad_gets_worse(void **state) {
     qc_object_release(m);
 }
 
+/* Quads of a flat grid whose area vector points down. */
+static int facing_away(const qc_polygon_mesh *q) {
+    int n = 0;
+    for (int32_t f = 0; f < q->n_faces; f++) {
+        double d[2][2];
+        for (int i = 0; i < 2; i++)
+            for (int j = 0; j < 2; j++)
+                d[i][j] = q->position[3 * q->face_vertex[4 * f + i + 2] + j] -
+                          q->position[3 * q->face_vertex[4 * f + i] + j];
+        n += d[0][0] * d[1][1] - d[0][1] * d[1][0] < 0;
+    }
+    return n;
+}
+
+/* Measured against its own normal, a quad folded wholly over is better than a squeezed one. */
+static void no_quad_comes_to_face_away(void **state) {
+    qc_mesh *m = grid(*state, 5, 5, 0, 1);
+    for (int i = 1; i <= 40; i++) {
+        qc_polygon_mesh *q = quad_grid(*state, 8, 0.05 * i, -1, 1), *out = NULL;
+        assert_int_equal(qc_quads_relax(*state, m, q, NULL, &out), QC_OK);
+        assert_true(facing_away(out) <= facing_away(q));
+        qc_object_release(out);
+        qc_object_release(q);
+    }
+    qc_object_release(m);
+}
+
 /* A copy which says that the edges in column i of quad_grid() are on features. */
 static qc_polygon_mesh *with_lines(qc_ctx *ctx, const qc_polygon_mesh *q, int n, int i) {
     qc_polygon_mesh *copy = NULL;
@@ -212,10 +239,11 @@ static void bad_input_is_named(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quads_become_squares),       cmocka_unit_test(turned_quads_are_repaired),
-        cmocka_unit_test(no_quad_gets_worse),         cmocka_unit_test(features_are_kept),
-        cmocka_unit_test(scale_changes_nothing_else), cmocka_unit_test(threads_change_nothing),
-        cmocka_unit_test(bad_input_is_named),         cmocka_unit_test(proportions_are_kept),
+        cmocka_unit_test(quads_become_squares),   cmocka_unit_test(turned_quads_are_repaired),
+        cmocka_unit_test(no_quad_gets_worse),     cmocka_unit_test(no_quad_comes_to_face_away),
+        cmocka_unit_test(features_are_kept),      cmocka_unit_test(scale_changes_nothing_else),
+        cmocka_unit_test(threads_change_nothing), cmocka_unit_test(bad_input_is_named),
+        cmocka_unit_test(proportions_are_kept),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
