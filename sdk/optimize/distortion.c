@@ -277,7 +277,8 @@ qc_status qc_distortion_matching(qc_ctx *ctx, const qc_distortion *d, qc_matchin
     if (!m) return QC_ERR_NOMEM;
     match_turns(d, m);
     qc_status status = qc_face_field_create(ctx, d->mesh, d->x, old->weight, old->trusted, &field);
-    if (!status && old->aligned) status = qc_face_field_set_aligned(ctx, field, old->aligned, old->bend);
+    if (!status && old->aligned)
+        status = qc_face_field_set_aligned(ctx, field, old->aligned, old->bend);
     if (!status) status = qc_matching_create(ctx, field, m, out);
     qc_object_release(field);
     qc__free(m);

@@ -168,8 +168,8 @@ typedef struct qc_untangle_options {
     uint32_t struct_size;
     int32_t max_rounds; /* outer rounds (epsilon)                                               */
     int32_t max_iterations; /* L-BFGS iterations a round */
-    int32_t relax; /* steps which even out what was moved or is distorted, every face staying positive;
-                      0 = none */
+    int32_t relax; /* steps which even out what was moved or is distorted, every face staying
+                      positive; 0 = none */
 } qc_untangle_options;
 #define QC_UNTANGLE_OPTIONS_INIT                                                                   \
     { sizeof(qc_untangle_options), 20, 200, 50 }
