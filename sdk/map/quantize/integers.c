@@ -12,8 +12,10 @@
 enum {
     MOST_REFINEMENTS = 40, /* by sqrt(2): 2^20 */
     DENSITY_ROUNDS = 8,
-    SCANS = 10
+    SCANS = 10,
+    PATIENCE = 2 /* sweeps */
 };
+static const double stuck = 0.9;                        /* of the violation, left by a sweep */
 static const double good_miss = 0.02, fair_miss = 0.05; /* of the number of quads */
 static const double scan_step = 0.02;                   /* of the scale */
 /* Of a path which mends a violation; of others it is what they gain. */
@@ -95,11 +97,13 @@ static qc_status try_edge(qc__integers *q, int32_t h, bool *improved) {
     return QC_OK;
 }
 
-/* Moves until none helps. */
+/* Moves until none helps, or until a sweep over the edges mends next to nothing of what is
+ * violated: then a finer scale is the better way. */
 static qc_status descend(qc__integers *q) {
     const qc__coarse *c = q->coarse;
     bool improved = true;
-    while (improved) {
+    for (int32_t sweep = 0; improved; sweep++) {
+        const int64_t before = q->violation;
         improved = false;
         for (int32_t h = 0; h < 3 * c->n_triangles; h++) {
             if (c->twin[h] >= 0 && c->twin[h] < h) continue;
@@ -107,6 +111,7 @@ static qc_status descend(qc__integers *q) {
             const qc_status status = try_edge(q, h, &improved);
             if (status != QC_OK) return status;
         }
+        if (sweep >= PATIENCE && (double)q->violation > stuck * (double)before) break;
     }
     return QC_OK;
 }

@@ -204,8 +204,8 @@ static void integers_stay(void **state) {
     double made;
     must(ctx, qc__coarse_integers(ctx, &b.c, 1, 0, x, &made));
     for (int32_t h = 0; h < 36; h++) {
-        assert_int_equal(x[h].u << BITS, b.vector[h].u);
-        assert_int_equal(x[h].v << BITS, b.vector[h].v);
+        assert_int_equal(x[h].u * (1 << BITS), b.vector[h].u);
+        assert_int_equal(x[h].v * (1 << BITS), b.vector[h].v);
     }
     assert_true(made == 82);
     qc_ctx_free(ctx);
