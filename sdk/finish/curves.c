@@ -8,11 +8,6 @@ static bool flagged(const qc_mesh *m, const uint8_t *feature, int32_t e) {
     return (feature && feature[e]) || m->edge_halfedge[2 * (int64_t)e + 1] < 0;
 }
 
-static int32_t other_end(const qc_mesh *m, int32_t e, int32_t v) {
-    const int32_t *end = m->edge_vertex + 2 * (int64_t)e;
-    return end[0] == v ? end[1] : end[0];
-}
-
 /* Feature edges at v: at most two of them in `edge`; returns how many there are. */
 static int edges_at(const qc_mesh *m, const uint8_t *feature, int32_t v, int32_t edge[2]) {
     const int32_t first = m->vertex_corner[v];
@@ -30,7 +25,7 @@ static int edges_at(const qc_mesh *m, const uint8_t *feature, int32_t v, int32_t
 static bool turns(const qc_mesh *m, int32_t v, const int32_t edge[2]) {
     double d[2][3];
     for (int i = 0; i < 2; i++) {
-        const int32_t w = other_end(m, edge[i], v);
+        const int32_t w = qc__other_end(m, edge[i], v);
         for (int k = 0; k < 3; k++)
             d[i][k] = m->position[3 * (int64_t)w + k] - m->position[3 * (int64_t)v + k];
     }
@@ -54,7 +49,7 @@ static int32_t beginning(const qc__curves *c, const uint8_t *feature, int32_t e,
             break;
         }
         edge = back;
-        at = other_end(c->mesh, edge, at);
+        at = qc__other_end(c->mesh, edge, at);
     }
     *from = at;
     return edge;
@@ -75,7 +70,7 @@ static void follow(qc__curves *c, const uint8_t *feature, int32_t e) {
         c->edge_curve[e] = c->n;
         qc__halfedge_vector(m, h, d);
         arc += qc__norm3(d);
-        at = other_end(m, e, at);
+        at = qc__other_end(m, e, at);
         if (c->corner[at]) break;
         e = following(m, feature, at, e);
     } while (e != first);

@@ -12,7 +12,7 @@ die() { echo "FAILED: $*"; exit 1; }
 quiet() { "$@" > "$scratch/log" 2>&1 || { cat "$scratch/log"; die "$*"; }; }
 
 say "make the packages"
-debs=$scratch/debs root=$scratch/root prefix=$scratch/root/usr
+debs=$scratch/debs root=$scratch/image prefix=$scratch/image/usr
 quiet "$CPACK" --config "$build/CPackConfig.cmake" -D CPACK_PACKAGE_DIRECTORY="$scratch/work" \
     -D CPACK_OUTPUT_FILE_PREFIX="$debs" -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip
 ! grep -i warning "$scratch/log" || die "cpack warns"

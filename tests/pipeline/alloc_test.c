@@ -7,23 +7,7 @@
 #include <cmocka.h>
 #include <qc/qc.h>
 #include <stdlib.h>
-
-typedef struct counter {
-    int64_t made, fail_at, blocks; /* fail_at < 0: none fails */
-} counter;
-
-static void *counting_resize(void *user, void *p, size_t old_size, size_t new_size) {
-    counter *c = user;
-    (void)old_size;
-    if (new_size == 0) {
-        c->blocks -= p != NULL;
-        free(p);
-        return NULL;
-    }
-    if (c->made++ == c->fail_at) return NULL;
-    c->blocks += p == NULL;
-    return realloc(p, new_size);
-}
+#include "tests/pipeline/counting.h"
 
 static void out_of_memory_anywhere_is_an_error(void **state) {
     (void)state;

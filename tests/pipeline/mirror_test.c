@@ -8,6 +8,7 @@
 #include <qc/qc.h>
 #include <stdlib.h>
 #include <string.h>
+#include "tests/pipeline/counting.h"
 
 /* Moves the vertices on x = 0 off it. */
 static qc_status shift(const qc_run *run, const void *raw) {
@@ -164,23 +165,6 @@ static void halves_which_do_not_fit_are_not_joined(void **state) {
     assert_int_equal(qc_remesh_check(s.ctx, NULL), QC_OK);
     qc_object_release(input);
     close_setting(&s);
-}
-
-typedef struct counter {
-    int64_t made, fail_at, blocks; /* fail_at < 0: none fails */
-} counter;
-
-static void *counting_resize(void *user, void *p, size_t old_size, size_t new_size) {
-    counter *c = user;
-    (void)old_size;
-    if (new_size == 0) {
-        c->blocks -= p != NULL;
-        free(p);
-        return NULL;
-    }
-    if (c->made++ == c->fail_at) return NULL;
-    c->blocks += p == NULL;
-    return realloc(p, new_size);
 }
 
 /* A sample of all allocations, among them the last ones, which are those of the mirror image. */

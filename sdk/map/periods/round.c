@@ -17,12 +17,8 @@ static qc_status prepare(qc__rounding *r) {
     memcpy(r->f, seamless->f, sizeof *r->f * (size_t)n_corners);
     qc_status status =
         qc_mesh_geometry(r->ctx, r->mesh, NULL, NULL, r->cotangent, NULL, NULL, NULL);
-    if (status == QC_OK && seamless->weight) {
-        r->weight = QC__NEW(r->ctx, double, r->mesh->n_faces);
-        if (!r->weight) return QC_ERR_NOMEM;
-        memcpy(r->weight, seamless->weight, sizeof *r->weight * (size_t)r->mesh->n_faces);
-        for (int64_t c = 0; c < n_corners; c++) r->cotangent[c] *= r->weight[c / 3];
-    }
+    if (status == QC_OK && seamless->weight)
+        for (int64_t c = 0; c < n_corners; c++) r->cotangent[c] *= seamless->weight[c / 3];
     if (status == QC_OK)
         status = qc__seams_create(r->ctx, &cover, seamless->cut, seamless->face_turn,
                                   seamless->matching->index4, seamless->matching->axis, &r->seams);
@@ -105,9 +101,9 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
     qc__separation_free(r.separation);
     qc__periods_free(r.periods);
     qc__seams_free(r.seams);
-    void *const blocks[] = {r.weight, r.cotangent, r.f,      r.trial,     r.best,         r.P,
-                            r.period, r.gap,       r.target, r.rounded,   r.best_rounded, r.z,
-                            r.symbol, r.wedge,     r.F,      r.correction};
+    void *const blocks[] = {r.cotangent, r.f,      r.trial,  r.best,    r.P,
+                            r.period,    r.gap,    r.target, r.rounded, r.best_rounded,
+                            r.z,         r.symbol, r.wedge,  r.F,       r.correction};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

@@ -17,8 +17,7 @@ typedef struct qc__rounding {
     const qc_seamless_map *seamless;
     const qc_mesh *mesh;
     qc_round_options options;
-    double *weight;    /* n_faces: of the seamless map, raised where features fold it; NULL = 1 */
-    double *cotangent; /* times the weights of the faces */
+    double *cotangent; /* times the weights of the faces, which are those of the seamless map */
     qc__seams *seams;
     qc__periods *periods;
     qc__separation *separation;
@@ -47,8 +46,9 @@ typedef struct qc__rounding {
 double qc__round_area(const qc_complex *f, int32_t n_faces);
 /* Whether the best map folds over or winds wrong. */
 bool qc__round_folds(const qc__rounding *r);
-/* Dirichlet energy of corner values f in the norm without stiffening. */
-double qc__round_energy(const qc__rounding *r, const qc_complex *f);
+/* 1/2 int |df - z|^2 of corner values f and a form z (3 n_faces each, NULL = 0) in the norm without
+ * the weights of the faces. */
+double qc__round_energy(const qc__rounding *r, const qc_complex *f, const qc_complex *z);
 /* Puts the features of the seamless map on isolines, with real levels, and unfolds it. Then finds
  * what has to stay apart. */
 qc_status qc__round_align(qc__rounding *r);

@@ -6,7 +6,6 @@
 #include "sdk/map/periods/align.h"
 #include "sdk/map/periods/frame_form.h"
 #include "sdk/map/periods/unfold.h"
-#include "sdk/map/periods/wrong_cones.h"
 
 enum { REACH = 3 /* target edge lengths within which points and features are kept apart */ };
 
@@ -19,19 +18,6 @@ static qc_status combed_frame(qc__rounding *r) {
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces && status == QC_OK; c++)
         r->z[c] = qc_quarter_turn(r->z[c], seamless->face_turn[c / 3]);
     return status;
-}
-
-/* 1/2 int |dg - z|^2 for the aligned map, before scaling. */
-static double curl_energy(const qc__rounding *r) {
-    const qc_complex *z = r->z;
-    double energy = 0;
-    for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
-        const qc_complex a = r->f[qc_next((int32_t)c)], b = r->f[qc_prev((int32_t)c)];
-        const double re = b.re - a.re - z[c].re, im = b.im - a.im - z[c].im;
-        energy +=
-            0.25 * r->cotangent[c] / (r->weight ? r->weight[c / 3] : 1.0) * (re * re + im * im);
-    }
-    return energy;
 }
 
 /* Unfolds the map; fewer faces fold and fewer cones wind wrong afterwards, mostly none. What is
@@ -49,7 +35,7 @@ static qc_status unfold(qc__rounding *r) {
                 "evaluations at %d and %d",
                 (int)done.folded_before, (int)done.wrong_before, (int)done.evaluations,
                 (int)done.folded, (int)done.wrong);
-        r->curl_energy = curl_energy(r);
+        r->curl_energy = qc__round_energy(r, r->f, r->z);
     }
     const bool clean = done.folded + done.wrong == 0;
     if (status != QC_OK || clean || r->seams->n_levels == 0) return status;
@@ -64,7 +50,7 @@ qc_status qc__round_align(qc__rounding *r) {
     qc_status status = combed_frame(r);
     if (status == QC_OK && r->seams->n_levels > 0) {
         status = qc__align(r->ctx, r->periods, r->P, r->z, r->f, r->period);
-        r->curl_energy = curl_energy(r);
+        r->curl_energy = qc__round_energy(r, r->f, r->z);
     }
     if (status == QC_OK && r->periods && !r->options.trial && r->mesh->n_poles == 0)
         status = unfold(r);

@@ -30,10 +30,6 @@ static void mix(blend *b) {
     }
 }
 
-static bool is_folded(const qc_complex *f) {
-    return qc__round_area(f, 1) <= 0;
-}
-
 static void add_bad(blend *b, int32_t v, int32_t *n) {
     if (b->ring[v] >= 0) return;
     b->ring[v] = 0;
@@ -49,7 +45,7 @@ static int32_t find_bad(blend *b) {
     for (int32_t t = 0; t < m->n_faces; t++) {
         const int32_t *v = m->face_vertex + 3 * (int64_t)t;
         const bool done = b->weight[v[0]] >= 1 && b->weight[v[1]] >= 1 && b->weight[v[2]] >= 1;
-        if (done || !is_folded(b->f + 3 * (int64_t)t)) continue;
+        if (done || !qc__is_folded(b->f + 3 * (int64_t)t)) continue;
         for (int k = 0; k < 3; k++) add_bad(b, v[k], &n);
     }
     for (int32_t v = 0; v < b->n_indices; v++)

@@ -6,7 +6,6 @@
 
 #include "sdk/map/periods/round.h"
 #include "sdk/map/periods/snap.h"
-#include "sdk/map/periods/wrong_cones.h"
 
 static const double read_tolerance = 1e-3; /* of the integers read from the values */
 static const double noteworthy = 0.1;      /* more quads than asked for ... */

@@ -20,17 +20,17 @@ double qc__round_area(const qc_complex *f, int32_t n_faces) {
 
 bool qc__round_folds(const qc__rounding *r) {
     for (int32_t t = 0; t < r->mesh->n_faces; t++)
-        if (qc__round_area(r->best + 3 * (int64_t)t, 1) <= 0) return true;
+        if (qc__is_folded(r->best + 3 * (int64_t)t)) return true;
     return r->best_wrong > 0;
 }
 
-double qc__round_energy(const qc__rounding *r, const qc_complex *f) {
+double qc__round_energy(const qc__rounding *r, const qc_complex *f, const qc_complex *z) {
+    const double *weight = r->seamless->weight;
     double energy = 0;
     for (int64_t c = 0; c < 3 * (int64_t)r->mesh->n_faces; c++) {
         const qc_complex a = f[qc_next((int32_t)c)], b = f[qc_prev((int32_t)c)];
-        const double du = b.re - a.re, dv = b.im - a.im;
-        const double weight = r->weight ? r->weight[c / 3] : 1.0;
-        energy += 0.25 * r->cotangent[c] / weight * (du * du + dv * dv);
+        const double du = b.re - a.re - (z ? z[c].re : 0), dv = b.im - a.im - (z ? z[c].im : 0);
+        energy += 0.25 * r->cotangent[c] / (weight ? weight[c / 3] : 1.0) * (du * du + dv * dv);
     }
     return energy;
 }
@@ -86,7 +86,7 @@ static qc_status energy_of_direct_rounding(qc__rounding *r, double *energy) {
     const qc_status status = solve_gap(r);
     if (status != QC_OK) return status;
     qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
-    *energy = qc__round_energy(r, r->trial);
+    *energy = qc__round_energy(r, r->trial, NULL);
     return QC_OK;
 }
 
@@ -113,7 +113,7 @@ static bool is_better(const qc__rounding *r, double miss) {
 qc_status qc__round_extend(qc__rounding *r, double scale, double wanted,
                            const qc_lattice_result *found, double *quads) {
     qc_lattice_result result = found ? *found : (qc_lattice_result){0};
-    const bool weighted = r->P && r->weight; /* then P measures in another norm */
+    const bool weighted = r->P && r->seamless->weight; /* then P measures in another norm */
     const bool measured = !found || !r->P || weighted;
     const int32_t n = r->seams->n_free;
     memset(r->correction, 0, sizeof *r->correction * (size_t)r->mesh->n_vertices);
@@ -127,7 +127,7 @@ qc_status qc__round_extend(qc__rounding *r, double scale, double wanted,
     }
     if (measured && n > 0) {
         qc__periods_corners(r->seams, r->wedge, r->correction, r->trial);
-        result.energy = qc__round_energy(r, r->trial);
+        result.energy = qc__round_energy(r, r->trial, NULL);
     }
     if (!r->P) result.energy_direct = result.energy;
     write_trial(r, scale);

@@ -17,7 +17,7 @@ static double image_angle(const qc_mesh *mesh, const qc_complex *f, int32_t v) {
     return angle;
 }
 
-static bool is_folded(const qc_complex *p) {
+bool qc__is_folded(const qc_complex *p) {
     return (p[1].re - p[0].re) * (p[2].im - p[0].im) - (p[2].re - p[0].re) * (p[1].im - p[0].im) <=
            0;
 }
@@ -32,7 +32,7 @@ int32_t qc__wrong_cones(const qc_mesh *mesh, const int32_t *index4, const qc_com
         if (index4[v] != 0) wrong += qc__winds_wrong(mesh, index4[v], f, v);
     for (int32_t c = 0; c < 3 * mesh->n_faces; c++) {
         const int32_t v = mesh->face_vertex[c];
-        if (index4[v] == 0 && is_folded(f + c / 3 * 3))
+        if (index4[v] == 0 && qc__is_folded(f + c / 3 * 3))
             wrong += lround(image_angle(mesh, f, v) / quarter) > 4;
     }
     return wrong;
@@ -40,7 +40,7 @@ int32_t qc__wrong_cones(const qc_mesh *mesh, const int32_t *index4, const qc_com
 
 void qc__stiffen(const qc_mesh *mesh, const qc_complex *f, double *weight) {
     for (int32_t t = 0; t < mesh->n_faces; t++)
-        if (is_folded(f + 3 * (int64_t)t)) weight[t] *= 4;
+        if (qc__is_folded(f + 3 * (int64_t)t)) weight[t] *= 4;
     for (int32_t h = 0; h < 3 * mesh->n_faces; h++) {
         const int32_t g = mesh->twin[h];
         if (g >= 0 && weight[h / 3] < 0.5 * weight[g / 3]) weight[h / 3] = 0.5 * weight[g / 3];

@@ -4,6 +4,8 @@
 
 #include <qc/mesh.h>
 
+/* Whether the triangle p[0..2] is not positive. */
+bool qc__is_folded(const qc_complex *p);
 /* Number of cones whose image angle is not 4 - index4 quarter turns, and of folded corners whose
  * regular vertex is wound more than once: fold-overs which untangling can hardly undo. f: 3
  * n_faces, index4: n_vertices. */

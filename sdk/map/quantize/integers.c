@@ -28,7 +28,7 @@ static bool is_violated(const qc__integers *q, int32_t h) {
     if (q->violation == 0) return false;
     if (qc__integers_area(q, h / 3) <= 0 || (g >= 0 && qc__integers_area(q, g / 3) <= 0))
         return true;
-    const int32_t a = q->coarse->origin[h], b = q->coarse->origin[qc__coarse_next(h)];
+    const int32_t a = q->coarse->origin[h], b = q->coarse->origin[qc_next(h)];
     return (q->expected[a] >= 0 && q->turns[a] != q->expected[a]) ||
            (q->expected[b] >= 0 && q->turns[b] != q->expected[b]);
 }

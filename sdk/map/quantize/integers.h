@@ -38,12 +38,6 @@ typedef struct qc__integers {
     int64_t path_capacity;
 } qc__integers;
 
-static inline int32_t qc__coarse_next(int32_t h) {
-    return h % 3 == 2 ? h - 2 : h + 1;
-}
-static inline int32_t qc__coarse_prev(int32_t h) {
-    return h % 3 == 0 ? h + 2 : h - 1;
-}
 /* A unit may cross a feature along its axis only. */
 static inline bool qc__may_cross(const qc__coarse *c, int32_t h, int32_t k) {
     return c->axis[h] < 0 || ((k - c->axis[h]) & 1) == 0;

@@ -46,7 +46,7 @@ static bool is_inside_goal(const qc__integers *q, const qc__goal *goal, int32_t 
 static void expand(qc__integers *q, int32_t state, const qc__goal *goal, qc__found *outside) {
     const qc__coarse *c = q->coarse;
     const int32_t h = state / 4, k = state % 4;
-    const int32_t out[2] = {qc__coarse_next(h), qc__coarse_prev(h)};
+    const int32_t out[2] = {qc_next(h), qc_prev(h)};
     for (int32_t i = 0; i < 2; i++) {
         const int32_t b = out[i], g = c->twin[b];
         const double far = q->distance[state] + length(q, b, k);

@@ -19,7 +19,7 @@ static double wanted_cross(const qc__integers *q, int32_t a, int32_t b) {
 
 /* Cotangent of the angle opposite to h. */
 static double cotangent(const qc__integers *q, int32_t h) {
-    const int32_t n = qc__coarse_next(h), p = qc__coarse_prev(h);
+    const int32_t n = qc_next(h), p = qc_prev(h);
     return -wanted_dot(q, n, p) / wanted_cross(q, n, p);
 }
 
@@ -29,7 +29,7 @@ static int32_t canonical(const qc__coarse *c, int32_t h) {
 
 /* Axis directions in the sector of x at the start of h. */
 static int32_t directions(const qc__coarse *c, const qc__point *x, int32_t h) {
-    const int32_t p = qc__coarse_prev(h);
+    const int32_t p = qc_prev(h);
     const qc__point back = {-x[p].u, -x[p].v};
     int32_t n = 0;
     for (int d = 0; d < 4; d++) n += qc__in_sector(x[h], back, c->twin[p] < 0, d);
@@ -44,7 +44,7 @@ static void expect_windings(qc__integers *q) {
         q->expected[c->origin[h]] += directions(c, c->vector, h);
     for (int32_t h = 0; h < 3 * c->n_triangles; h++)
         if (c->twin[h] < 0 && c->axis[h] < 0)
-            q->expected[c->origin[h]] = q->expected[c->origin[qc__coarse_next(h)]] = -1;
+            q->expected[c->origin[h]] = q->expected[c->origin[qc_next(h)]] = -1;
 }
 
 qc_status qc__integers_weigh(qc__integers *q) {
@@ -82,7 +82,7 @@ int64_t qc__integers_area(const qc__integers *q, int32_t t) {
 int64_t qc__integers_area_after(const qc__integers *q, int32_t a, int32_t b, int32_t k) {
     const qc__point d = qc__turn_point((qc__point){1, 0}, k);
     const qc__point p = qc__plus(q->x[a], d), r = qc__minus(q->x[b], d);
-    return qc__coarse_next(a) == b ? qc__cross(p, r) : qc__cross(r, p);
+    return qc_next(a) == b ? qc__cross(p, r) : qc__cross(r, p);
 }
 
 /* --- what violates, by triangle --------------------------------------------------------------- */

@@ -61,9 +61,9 @@ def main():
     wanted = sources() + " " + a.only
     if os.path.exists(stamp) and os.path.exists(index) and open(stamp).read() == wanted:
         return
-    todo = [(a.folder, *n) for n in names() if n[0].startswith(tuple(a.only.split(",")))]
+    wanted_models = [(a.folder, *n) for n in names() if n[0].startswith(tuple(a.only.split(",")))]
     with multiprocessing.Pool(a.jobs) as pool, open(index, "w") as out:
-        for line in pool.imap(call, todo):
+        for line in pool.imap(call, wanted_models):
             print(json.dumps(line), file=out, flush=True)
     with open(stamp, "w") as out:
         out.write(wanted)

@@ -148,9 +148,9 @@ def decimated(points, faces, count, least=0.1):
     e = Editor(points, faces)
     length = 0.0
     for _ in range(12):
-        todo = sorted((e.length(a, b), a, b) for a, b in e.edges())
-        length = max(length, todo[len(todo) // 4][0])
-        for size, a, b in todo:
+        shortest = sorted((e.length(a, b), a, b) for a, b in e.edges())
+        length = max(length, shortest[len(shortest) // 4][0])
+        for size, a, b in shortest:
             if e.count() <= count or size > length:
                 break
             if (a, b) in e.apex and (b, a) in e.apex:

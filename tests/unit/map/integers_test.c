@@ -73,8 +73,7 @@ static void build(const complex_case *k, holder *b) {
             const int32_t p = side_of(h), q = side_of(g);
             if (p < 0 && q < 0 && h / 6 == g / 6) glue(b, h, g, 0);
             if (p < 0 || q < 0 || (torus && (p + q) % 2 != 0)) continue;
-            const int32_t hn = h % 3 == 2 ? h - 2 : h + 1, gn = g % 3 == 2 ? g - 2 : g + 1;
-            if (b->origin[h] == b->origin[gn] && b->origin[g] == b->origin[hn] && h != g)
+            if (b->origin[h] == b->origin[qc_next(g)] && b->origin[g] == b->origin[qc_next(h)])
                 glue(b, h, g, q - p - 2);
         }
 }
@@ -125,7 +124,7 @@ static void deform(holder *b, uint64_t *random) {
 static int32_t windings(const holder *b, const qc__point *v, int32_t vertex) {
     int32_t n = 0;
     for (int32_t h = 0; h < 3 * b->c.n_triangles; h++) {
-        const int32_t p = h % 3 == 0 ? h + 2 : h - 1;
+        const int32_t p = qc_prev(h);
         if (b->origin[h] != vertex) continue;
         for (int d = 0; d < 4; d++)
             n += qc__in_sector(v[h], (qc__point){-v[p].u, -v[p].v}, b->twin[p] < 0, d);

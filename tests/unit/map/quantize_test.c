@@ -19,15 +19,6 @@ static qc_corner_map *quantized(const setting *s) {
     return map;
 }
 
-static double quads_of(const qc_corner_map *map) {
-    double area = 0;
-    for (int32_t t = 0; t < map->mesh->n_faces; t++) {
-        const double *p = map->uv + 6 * (int64_t)t;
-        area += 0.5 * ((p[2] - p[0]) * (p[5] - p[1]) - (p[4] - p[0]) * (p[3] - p[1]));
-    }
-    return area;
-}
-
 static void periods_are_integers(void **state) {
     (void)state;
     qc_ctx *ctx = context(1);
@@ -37,7 +28,7 @@ static void periods_are_integers(void **state) {
             qc_corner_map *map = quantized(s);
             qc_grid_map *grid = NULL;
             must(ctx, qc_grid_map_create(ctx, map, 1e-9, &grid));
-            const double made = quads_of(map);
+            const double made = map_area(map);
             assert_true(fabs(made - rint(made)) < 1e-8 * made);
             assert_true(fabs(made / quads - 1) < (quads > 1000 ? 0.1 : 0.5));
             qc_object_release(grid);

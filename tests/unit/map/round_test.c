@@ -24,16 +24,6 @@ static complex_t corner(const qc_corner_map *map, int32_t c) {
     return map->uv[2 * (int64_t)c] + map->uv[2 * (int64_t)c + 1] * I;
 }
 
-static double signed_area(const qc_corner_map *map) {
-    double area = 0;
-    for (int32_t t = 0; t < map->mesh->n_faces; t++) {
-        const complex_t a = corner(map, 3 * t + 1) - corner(map, 3 * t);
-        const complex_t b = corner(map, 3 * t + 2) - corner(map, 3 * t);
-        area += 0.5 * (creal(a) * cimag(b) - cimag(a) * creal(b));
-    }
-    return area;
-}
-
 static void results_are_integer_seamless(void **state) {
     (void)state;
     qc_ctx *ctx = context(1);
@@ -43,7 +33,7 @@ static void results_are_integer_seamless(void **state) {
         qc_grid_map *grid = NULL;
         must(ctx, qc_grid_map_create(ctx, map, 1e-9, &grid));
         qc_object_release(grid);
-        const double area = signed_area(map);
+        const double area = map_area(map);
         if (s->mesh->n_boundary_loops == 0) assert_true(fabs(area - rint(area)) < 1e-8 * area);
         assert_true(map->rotation && map->cross);
         for (int32_t e = 0; e < s->mesh->n_edges; e++) {
@@ -146,7 +136,7 @@ static void densities_are_met(void **state) {
         for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
             setting *s = setting_create(ctx, &CASES[i], wanted[k]);
             qc_corner_map *map = rounded(s, QC_LATTICE_QUADS);
-            const double quads = signed_area(map);
+            const double quads = map_area(map);
             if (fabs(quads / wanted[k] - 1) > 0.05)
                 fail_msg("%s: %g quads instead of %g", CASES[i].shape, quads, wanted[k]);
             qc_object_release(map);
@@ -267,7 +257,7 @@ static void components_are_rounded_apart(void **state) {
         qc_corner_map *map = rounded(s, lattice);
         qc_grid_map *grid = NULL;
         if (lattice != QC_LATTICE_INTEGER) must(ctx, qc_grid_map_create(ctx, map, 1e-9, &grid));
-        assert_true(fabs(signed_area(map) / 1500 - 1) < 0.05);
+        assert_true(fabs(map_area(map) / 1500 - 1) < 0.05);
         qc_object_release(grid);
         qc_object_release(map);
     }

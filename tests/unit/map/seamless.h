@@ -289,4 +289,14 @@ static inline qc_complex *combed_form(const setting *s) {
     return z;
 }
 
+/* Unit squares which the map covers: quads. */
+static inline double map_area(const qc_corner_map *map) {
+    double area = 0;
+    for (int32_t t = 0; t < map->mesh->n_faces; t++) {
+        const double *p = map->uv + 6 * (int64_t)t;
+        area += 0.5 * ((p[2] - p[0]) * (p[5] - p[1]) - (p[4] - p[0]) * (p[3] - p[1]));
+    }
+    return area;
+}
+
 #endif
