@@ -1,6 +1,8 @@
 /* Balls of edge paths and the measure of crowding, see crowd.h. */
 #include "crowd.h"
 
+#include <float.h>
+
 qc_status qc__crowd_create(qc_ctx *ctx, const qc_mesh *mesh, const int32_t *index4,
                            const uint8_t *barred, qc__crowd *out) {
     int32_t V = mesh->n_vertices;
@@ -135,4 +137,26 @@ int32_t qc__crowd_path(qc__crowd *c, int32_t p, double distance, int32_t *other)
     forget_ball(c, n);
     for (int32_t i = 0; i < edges; i++) c->ball[i] = c->queue[i];
     return q == p ? edges : 0;
+}
+
+double qc__crowd_lone_pair(qc__crowd *crowd) {
+    const qc_mesh *mesh = crowd->mesh;
+    int32_t n = 0, p = -1, q;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        if (crowd->index4[v] == 0) continue;
+        n++;
+        if (crowd->index4[v] == 1) p = v;
+    }
+    if (n != 2 || p < 0 || mesh->euler != 0 || mesh->n_boundary_edges > 0 ||
+        mesh->n_components != 1)
+        return 0;
+    double length = 0;
+    const int32_t n_path = qc__crowd_path(crowd, p, 0.5 * DBL_MAX, &q);
+    for (int32_t i = 0; i < n_path; i++) {
+        const int32_t *end = mesh->edge_vertex + 2 * (int64_t)crowd->ball[i];
+        double d[3];
+        qc__sub(mesh->position + 3 * (size_t)end[0], mesh->position + 3 * (size_t)end[1], d);
+        length += sqrt(qc__dot3(d, d));
+    }
+    return length;
 }

@@ -29,6 +29,15 @@ int32_t qc__crowd_measure(qc__crowd *crowd, int32_t p, double distance);
  * listed from that singularity back to p, in ball; their number, 0 = none. */
 int32_t qc__crowd_path(qc__crowd *crowd, int32_t p, double distance, int32_t *other);
 
+/* Length of a path between the singularities of a torus which has two of them, 1/4 and -1/4, and so
+ * no quad mesh (Izmestiev, Kusner, Rote, Springborn, Sullivan 2013); otherwise 0. */
+double qc__crowd_lone_pair(qc__crowd *crowd);
+
+/* Indices wanted: pairs cancel along a shortest path within the bounds, what is left of an excess
+ * is shared with regular neighbours. theta (n_edges) turns by pi/2 where a quarter of index moves
+ * over an edge; index4 is that of the crowd. (prescribe.c) */
+void qc__crowd_prescribe(qc__crowd *crowd, double distance, double *theta, int32_t *index4);
+
 static inline int32_t qc__index_excess(int32_t index4) {
     return index4 > 1 ? index4 - 1 : index4 < -2 ? -2 - index4 : 0;
 }

@@ -7,7 +7,6 @@
 #include "crowd.h"
 #include "region.h"
 
-#include <float.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -159,46 +158,11 @@ static void swap_crosses(separator *s, bool back) {
     }
 }
 
-/* Moves a quarter of index over edge e, from its end p to the other, which is returned: theta turns
- * by pi/2. */
-static int32_t move_quarter(separator *s, int32_t e, int32_t p) {
-    int32_t h = s->mesh->edge_halfedge[2 * e];
-    bool ends = qc_halfedge_end(s->mesh, h) == p;
-    int32_t q = ends ? qc_halfedge_start(s->mesh, h) : qc_halfedge_end(s->mesh, h);
-    s->theta[e] += ends ? -QC__PI / 2 : QC__PI / 2;
-    s->index4[p]--;
-    s->index4[q]++;
-    return q;
-}
-
-/* Shares the excess of p among regular neighbours. */
-static void spread_index(separator *s, int32_t p) {
-    const qc_mesh *mesh = s->mesh;
-    int32_t first = mesh->vertex_corner[p], c = first;
-    do {
-        int32_t excess = qc__index_excess(s->index4[p]), q = mesh->face_vertex[qc_next(c)];
-        int32_t e = mesh->halfedge_edge[qc_prev(c)];
-        if (excess && s->index4[q] == 0 && !qc_vertex_on_boundary(mesh, q) && !s->hard[q])
-            move_quarter(s, e, s->index4[p] > 0 ? p : q);
-        c = qc_corner_ccw(mesh, c);
-    } while (c >= 0 && c != first);
-}
-
-/* The indices wanted: pairs cancel along a shortest path, what is left of an excess is shared. */
-static void prescribe(separator *s) {
-    for (int32_t p = 0; p < s->mesh->n_vertices; p++) {
-        int32_t q, b = p, n = s->index4[p] > 0 ? qc__crowd_path(&s->crowd, p, s->distance, &q) : 0;
-        for (int32_t i = n - 1; i >= 0; i--) b = move_quarter(s, s->crowd.ball[i], b);
-    }
-    for (int32_t p = 0; p < s->mesh->n_vertices; p++)
-        if (qc__index_excess(s->index4[p])) spread_index(s, p);
-}
-
 static qc_status solve_region(qc_ctx *ctx, separator *s, int way) {
     const qc__region *r = &s->region;
     double length = fmax(s->distance, s->mesh->mean_edge_length);
     if (way != PRESCRIBED) return qc__region_solve(ctx, r, s->x, way == TRANSPORTED, length, s->z);
-    prescribe(s);
+    qc__crowd_prescribe(&s->crowd, s->distance, s->theta, s->index4);
     qc_status status = qc__region_rotate(ctx, r, s->theta, s->z);
     for (int32_t i = 0; !status && i < r->n; i++) {
         double angle = 4 * creal(s->z[i]);
@@ -251,30 +215,6 @@ static qc_status thin_out(qc_ctx *ctx, separator *s, uint8_t *trusted) {
     return status;
 }
 
-/* Length of a path between the singularities of a torus which has two of them, 1/4 and -1/4, and so
- * no quad mesh (Izmestiev, Kusner, Rote, Springborn, Sullivan 2013); otherwise 0. */
-static double lone_pair(separator *s) {
-    const qc_mesh *mesh = s->mesh;
-    int32_t n = 0, p = -1, q;
-    for (int32_t v = 0; v < mesh->n_vertices; v++) {
-        if (s->index4[v] == 0) continue;
-        n++;
-        if (s->index4[v] == 1) p = v;
-    }
-    if (n != 2 || p < 0 || mesh->euler != 0 || mesh->n_boundary_edges > 0 ||
-        mesh->n_components != 1)
-        return 0;
-    double length = 0;
-    const int32_t n_path = qc__crowd_path(&s->crowd, p, 0.5 * DBL_MAX, &q);
-    for (int32_t i = 0; i < n_path; i++) {
-        const int32_t *end = mesh->edge_vertex + 2 * (int64_t)s->crowd.ball[i];
-        double d[3];
-        qc__sub(mesh->position + 3 * (size_t)end[0], mesh->position + 3 * (size_t)end[1], d);
-        length += sqrt(qc__dot3(d, d));
-    }
-    return length;
-}
-
 qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
                             const uint8_t *aligned, uint8_t *trusted, qc_complex *x,
                             int32_t *left) {
@@ -290,7 +230,7 @@ qc_status qc_field_separate(qc_ctx *ctx, const qc_mesh *mesh, double distance,
     if (!status && !qc__progress(ctx, 0.8)) status = QC_ERR_CANCELLED;
     s.distance = 0; /* pairs do not count where they stand in the way of an index */
     if (!status) status = thin_out(ctx, &s, kept);
-    s.distance = status ? 0 : 1.01 * lone_pair(&s);
+    s.distance = status ? 0 : 1.01 * qc__crowd_lone_pair(&s.crowd);
     if (!status && s.distance > 0) status = thin_out(ctx, &s, kept);
     if (!status) {
         int32_t n = report(ctx, &s);

@@ -75,6 +75,9 @@ static inline void qc__cross3(const double a[3], const double b[3], double c[3])
     c[1] = a[2] * b[0] - a[0] * b[2];
     c[2] = a[0] * b[1] - a[1] * b[0];
 }
+static inline double qc__distance3(const double a[3], const double b[3]) {
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
 /* The point of a face with barycentric coordinates w. */
 static inline void qc__face_point(const qc_mesh *m, int32_t t, const double w[3], double x[3]) {
     for (int i = 0; i < 3; i++) {

@@ -24,8 +24,8 @@ static const qc__piece *piece_of(const choice *s, int32_t cell) {
 static void glue(choice *s, int32_t a, int32_t b) {
     s->c->across[a] = b;
     s->c->across[b] = a;
-    qc__sets_unite(s->set, a, (b & ~3) | ((b + 1) & 3));
-    qc__sets_unite(s->set, b, (a & ~3) | ((a + 1) & 3));
+    qc__sets_unite(s->set, a, qc__side_end(b));
+    qc__sets_unite(s->set, b, qc__side_end(a));
 }
 
 /* Joins a kept open cell with its kept neighbours; a side meets one cell at most. */
@@ -88,7 +88,7 @@ static int32_t across_corner(choice *s, int32_t a, int end) {
     for (int32_t j = c->contact_first[i]; j < c->contact_first[i + 1]; j++) {
         const int32_t b = c->contact[2 * (int64_t)j + 1];
         if (c->contact[2 * (int64_t)j] != a || !c->keep[b / 4] || c->across[b] >= 0) continue;
-        return qc__sets_find(s->set, end ? b : (b & ~3) | ((b + 1) & 3));
+        return qc__sets_find(s->set, end ? b : qc__side_end(b));
     }
     return -1;
 }

@@ -132,9 +132,13 @@ typedef struct qc__cells {
     int64_t n_contacts, contact_capacity; /* pairs */
     qc__pieces pieces;
 } qc__cells;
+/* The next side of the same cell, which begins at the corner where side a ends. */
+static inline int32_t qc__side_end(int32_t a) {
+    return (a & ~3) | ((a + 1) & 3);
+}
 /* The boundary side counter-clockwise after the boundary side a of the kept cells. */
 static inline int32_t qc__next_boundary_side(const qc__cells *c, int32_t a) {
-    int32_t b = (a & ~3) | ((a + 1) & 3);
+    int32_t b = qc__side_end(a);
     while (c->across[b] >= 0) b = (c->across[b] & ~3) | ((c->across[b] + 1) & 3);
     return b;
 }
@@ -172,7 +176,7 @@ qc_status qc__loops_gaps(qc_ctx *ctx, const qc__ports *ports, const qc__cells *c
 /* Sets keep and across from the limits of the loops. set: 4 n, corners joined (sets). */
 qc_status qc__choose(qc_ctx *ctx, qc__cells *cells, const qc__loops *loops, int32_t *set);
 
-/* --- result (vertices.c, place.c, close.c, quads.c) ------------------------------- */
+/* --- result (vertices.c, place.c, pole_rings.c, close.c, quads.c) --------------- */
 
 /* Output vertex of each corner of the kept cells: corners which cells share across their sides.
  * vertex: 4 n, -1 = not kept. *n_lattice of the *n_vertices, the first ones, are lattice vertices.

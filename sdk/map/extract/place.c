@@ -5,6 +5,7 @@
 
 #include "sdk/map/extract/internal.h"
 #include "sdk/map/extract/rim.h"
+#include "sdk/mesh/internal.h"
 
 /* A point of a boundary halfedge, s from its start to its end. */
 typedef struct candidate {
@@ -20,10 +21,6 @@ static void point_of(const qc__rim *p, const candidate *c, double x[3]) {
     for (int i = 0; i < 3; i++) x[i] = a[i] + c->s * (b[i] - a[i]);
 }
 
-static double distance(const double *x, const double *y) {
-    return hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
-}
-
 /* Distance in space to the nearest placed vertex of the cells around, over the length which a
  * parameter unit has along the halfedge; at most 1. */
 static double spacing(const qc__rim *p, int32_t v, const candidate *c, double unit_length) {
@@ -33,7 +30,7 @@ static double spacing(const qc__rim *p, int32_t v, const candidate *c, double un
         for (int k = 0; k < 4; k++) {
             const int32_t w = p->vertex[(p->open[i] & ~3) | k];
             if (w == v || w < 0 || !p->placed[w]) continue;
-            least = fmin(least, distance(x, p->q->position + 3 * (int64_t)w) / unit_length);
+            least = fmin(least, qc__distance3(x, p->q->position + 3 * (int64_t)w) / unit_length);
         }
     return least;
 }
@@ -61,27 +58,8 @@ static void put_on_boundary(const qc__rim *p, int32_t v, const candidate *c) {
 /* Least scaled Jacobian of the quads around v. */
 static double quality(const qc__rim *p, int32_t v) {
     double least = 1;
-    for (int32_t i = p->kept_first[v]; i < p->kept_first[v + 1]; i++) {
-        const double *x[4];
-        double cross[4][3], normal[3] = {0}, scale[4];
-        for (int k = 0; k < 4; k++)
-            x[k] = p->q->position + 3 * (int64_t)p->vertex[(p->kept[i] & ~3) | k];
-        for (int k = 0; k < 4; k++) {
-            const double *o = x[k], *a = x[(k + 1) & 3], *b = x[(k + 3) & 3];
-            for (int j = 0; j < 3; j++) {
-                const int m = (j + 1) % 3, n = (j + 2) % 3;
-                cross[k][j] = (a[m] - o[m]) * (b[n] - o[n]) - (a[n] - o[n]) * (b[m] - o[m]);
-                normal[j] += cross[k][j];
-            }
-            scale[k] = distance(a, o) * distance(b, o);
-        }
-        const double length = hypot(hypot(normal[0], normal[1]), normal[2]);
-        for (int k = 0; k < 4; k++) {
-            double dot = 0;
-            for (int j = 0; j < 3; j++) dot += cross[k][j] * normal[j];
-            least = fmin(least, scale[k] > 0 && length > 0 ? dot / (scale[k] * length) : -1);
-        }
-    }
+    for (int32_t i = p->kept_first[v]; i < p->kept_first[v + 1]; i++)
+        least = fmin(least, qc__scaled_jacobian(p->q->position, p->vertex + (p->kept[i] & ~3), 4));
     return least;
 }
 
@@ -123,8 +101,8 @@ static void try_halfedge(const qc__rim *p, int32_t v, const qc__visit *visit, in
     double range[2];
     if (length == 0 || !clip(a, b, range)) return;
     const double nearest = ((at[0] - a[0]) * d[0] + (at[1] - a[1]) * d[1]) / (length * length);
-    const double unit_length = distance(m->position + 3 * (int64_t)qc_halfedge_start(m, h),
-                                        m->position + 3 * (int64_t)qc_halfedge_end(m, h)) /
+    const double unit_length = qc__distance3(m->position + 3 * (int64_t)qc_halfedge_start(m, h),
+                                             m->position + 3 * (int64_t)qc_halfedge_end(m, h)) /
                                length;
     for (int i = 0; i < 4; i++) {
         candidate c = {.halfedge = h, .corner = corner};

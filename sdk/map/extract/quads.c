@@ -43,7 +43,7 @@ static qc_status fill_lines(qc_ctx *ctx, const qc__ports *p, const qc__cells *c,
     const qc_status status = qc__feature_sides(ctx, p, c, side, q->source_edge, &n);
     for (int32_t i = 0; status == QC_OK && i < n; i++) {
         q->line[2 * (int64_t)i] = vertex[side[i]];
-        q->line[2 * (int64_t)i + 1] = vertex[(side[i] & ~3) | ((side[i] + 1) & 3)];
+        q->line[2 * (int64_t)i + 1] = vertex[qc__side_end(side[i])];
     }
     qc__free(side);
     return status;

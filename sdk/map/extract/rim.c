@@ -9,14 +9,13 @@ static void find_rim(const qc__rim *r, int32_t n_lattice, uint8_t *moved, int32_
     for (int32_t id = 0; id < lattice->n; id++) at[id] = -1;
     for (int32_t a = 0; a < 4 * c->n; a++) {
         if (r->vertex[a] < 0) continue;
-        if (c->across[a] < 0) moved[r->vertex[a]] = moved[r->vertex[(a & ~3) | ((a + 1) & 3)]] = 1;
+        if (c->across[a] < 0) moved[r->vertex[a]] = moved[r->vertex[qc__side_end(a)]] = 1;
         if (c->corner[a] < 0) continue;
         int32_t *v = &at[c->corner[a]];
         *v = *v == -1 || *v == r->vertex[a] ? r->vertex[a] : -2;
     }
     for (int32_t a = 0; c->rim_pole && a < 4 * c->n; a++)
-        if (c->rim_pole[a] >= 0)
-            moved[r->vertex[a]] = moved[r->vertex[(a & ~3) | ((a + 1) & 3)]] = 0;
+        if (c->rim_pole[a] >= 0) moved[r->vertex[a]] = moved[r->vertex[qc__side_end(a)]] = 0;
     for (int32_t a = 0; a < 4 * c->n; a++) {
         const int32_t v = r->vertex[a], id = c->corner[a];
         if (v >= 0 && id >= 0 && (at[id] == -2 || qc__lattice_on_boundary(lattice, id)))

@@ -10,8 +10,8 @@ static void unite_corners(const qc__cells *c, int32_t *set, int32_t *id) {
         const int32_t b = c->keep[a / 4] ? c->across[a] : -1;
         id[a] = -2;
         if (b < a) continue;
-        qc__sets_unite(set, a, (b & ~3) | ((b + 1) & 3));
-        qc__sets_unite(set, b, (a & ~3) | ((a + 1) & 3));
+        qc__sets_unite(set, a, qc__side_end(b));
+        qc__sets_unite(set, b, qc__side_end(a));
     }
     for (int32_t a = 0; a < 4 * c->n; a++) {
         if (!c->keep[a / 4]) continue;

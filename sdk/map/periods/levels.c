@@ -5,18 +5,7 @@
  * over the features; where a walk closes, at loops and where chains meet, and at points on the
  * chain, a relation between symbols is left. */
 #include <string.h>
-#include "sdk/map/periods/features.h"
-
-typedef struct term {
-    int32_t symbol, value;
-} term;
-
-typedef struct coordinate { /* sign (L + ...): x = sign L + offset_sign offset */
-    int32_t level;          /* -1 = not reached */
-    int8_t sign, offset_sign;
-    int32_t n; /* terms of the offset, from `start` in the pool */
-    int64_t start;
-} coordinate;
+#include "sdk/map/periods/levels.h"
 
 typedef struct joint { /* sign x of one end of an edge: the part of its corner value across */
     int32_t x, corner;
@@ -27,11 +16,10 @@ typedef struct walker {
     qc_ctx *ctx;
     qc__seams *s;
     const qc__features *f;
-    coordinate *coordinate;  /* 2 n_vertices */
     int64_t *incident_start; /* features at each vertex */
     int32_t *incident;
     int32_t *queue;
-    term *pool;
+    qc__levels *out;
     int64_t n_pool, pool_capacity;
     double *sum; /* n_segments x 2, dense accumulator over the translations ... */
     uint8_t *in_sum;
@@ -59,9 +47,9 @@ static void add_wedge(walker *q, int32_t corner, int32_t part, double factor) {
             factor * qc__part_sign(part, s->term_turn[i]));
 }
 
-static void add_offset(walker *q, const coordinate *x, double factor) {
+static void add_offset(walker *q, const qc__coordinate *x, double factor) {
     for (int64_t i = x->start; i < x->start + x->n; i++)
-        add(q, q->pool[i].symbol, factor * x->offset_sign * q->pool[i].value);
+        add(q, q->out->pool[i].symbol, factor * x->offset_sign * q->out->pool[i].value);
 }
 
 static int32_t settle(walker *q) { /* drops zeros; how many are left */
@@ -75,7 +63,7 @@ static int32_t settle(walker *q) { /* drops zeros; how many are left */
     return n;
 }
 
-/* --- relations and given coordinates ---------------------------------------------------------- */
+/* --- relations -------------------------------------------------------------------------------- */
 
 /* Appends the n terms left by settle, and those of up to two symbols with a value. */
 static bool push_relation(walker *q, int32_t n, int32_t a, int32_t a_value, int32_t b,
@@ -126,8 +114,8 @@ static int32_t ends_of(const walker *q, int32_t e, joint *a, joint *b) {
 
 /* x_b = sign_b (sign_a x_a + O_a - O_b), O the translations in the wedges. */
 static bool reach(walker *q, const joint *a, const joint *b, int32_t part) {
-    const coordinate from = q->coordinate[a->x];
-    coordinate *to = &q->coordinate[b->x];
+    const qc__coordinate from = q->out->coordinate[a->x];
+    qc__coordinate *to = &q->out->coordinate[b->x];
     const int8_t sign = (int8_t)(a->sign * b->sign);
     add_wedge(q, a->corner, part, 1);
     add_wedge(q, b->corner, part, -1);
@@ -140,21 +128,22 @@ static bool reach(walker *q, const joint *a, const joint *b, int32_t part) {
     add_wedge(q, b->corner, part, -b->sign);
     add_offset(q, &from, sign);
     const int32_t n = settle(q);
-    if (!qc__reserve(q->ctx, (void **)&q->pool, &q->pool_capacity, q->n_pool + n, sizeof(term)))
+    if (!qc__reserve(q->ctx, (void **)&q->out->pool, &q->pool_capacity, q->n_pool + n,
+                     sizeof *q->out->pool))
         return false;
     to->offset_sign = 1;
     to->start = q->n_pool;
     to->n = n;
     for (int32_t i = 0; i < n; i++) {
-        const term t = {q->touched[i], (int32_t)q->sum[q->touched[i]]};
-        q->pool[q->n_pool++] = t;
+        const qc__symbol_term t = {q->touched[i], (int32_t)q->sum[q->touched[i]]};
+        q->out->pool[q->n_pool++] = t;
     }
     return true;
 }
 
 /* sign_a x_a + O_a = sign_b x_b + O_b between coordinates of one level. */
 static bool close_walk(walker *q, const joint *a, const joint *b, int32_t part) {
-    const coordinate *x = &q->coordinate[a->x], *y = &q->coordinate[b->x];
+    const qc__coordinate *x = &q->out->coordinate[a->x], *y = &q->out->coordinate[b->x];
     add_wedge(q, a->corner, part, 1);
     add_wedge(q, b->corner, part, -1);
     add_offset(q, x, a->sign);
@@ -169,8 +158,8 @@ static bool start_level(walker *q, int32_t x) {
     if (!qc__reserve(q->ctx, (void **)&s->level_coordinate, &q->level_capacity, s->n_levels + 1,
                      sizeof(int32_t)))
         return false;
-    const coordinate root = {s->n_levels, 1, 1, 0, 0};
-    q->coordinate[x] = root;
+    const qc__coordinate root = {s->n_levels, 1, 1, 0, 0};
+    q->out->coordinate[x] = root;
     s->level_coordinate[s->n_levels++] = x;
     return true;
 }
@@ -189,7 +178,7 @@ static bool walk_from(walker *q, int32_t root) {
                 b = swap;
             }
             if (a.x != x) continue;
-            if (q->coordinate[b.x].level < 0) {
+            if (q->out->coordinate[b.x].level < 0) {
                 if (!reach(q, &a, &b, part)) return false;
                 q->queue[n++] = b.x;
             } else if (!close_walk(q, &a, &b, part)) {
@@ -206,7 +195,7 @@ static qc_status walk_features(walker *q) {
         joint a, b;
         if (q->f->axis[e] < 0) continue;
         ends_of(q, e, &a, &b);
-        if (q->coordinate[a.x].level >= 0) continue;
+        if (q->out->coordinate[a.x].level >= 0) continue;
         if (!start_level(q, a.x) || !walk_from(q, a.x)) return QC_ERR_NOMEM;
     }
     return QC_OK;
@@ -234,7 +223,7 @@ static qc_status collect_incidence(walker *q) {
 static qc_status bind_points(walker *q) {
     const qc__seams *s = q->s;
     for (int32_t i = 0; i < 2 * s->n_cones; i++) {
-        const coordinate *x = &q->coordinate[2 * s->cone_vertex[i / 2] + i % 2];
+        const qc__coordinate *x = &q->out->coordinate[2 * s->cone_vertex[i / 2] + i % 2];
         if (x->level < 0) continue;
         add_offset(q, x, 1);
         const int32_t n = settle(q);
@@ -245,75 +234,31 @@ static qc_status bind_points(walker *q) {
     return QC_OK;
 }
 
-/* --- given coordinates ------------------------------------------------------------------------ */
-
-static bool has_level(const walker *q, int32_t x) {
-    return q->coordinate && q->coordinate[x].level >= 0;
-}
-
-static qc_status allocate_given(walker *q) {
-    qc__seams *s = q->s;
-    int64_t terms = 2 * (int64_t)s->n_cones;
-    s->vertex_given = QC__NEW(q->ctx, int32_t, s->mesh->n_vertices);
-    if (!s->vertex_given) return QC_ERR_NOMEM;
-    for (int32_t v = 0; v < s->mesh->n_vertices; v++) {
-        const bool given = s->vertex_cone[v] >= 0 || has_level(q, 2 * v) || has_level(q, 2 * v + 1);
-        s->vertex_given[v] = given ? s->n_given++ : -1;
-        for (int32_t x = 2 * v; x < 2 * v + 2 && s->vertex_cone[v] < 0; x++)
-            if (has_level(q, x)) terms += 1 + q->coordinate[x].n;
-    }
-    s->given_start = QC__NEW(q->ctx, int64_t, 2 * (int64_t)s->n_given + 1);
-    s->given_symbol = QC__NEW(q->ctx, int32_t, terms);
-    s->given_value = QC__NEW(q->ctx, int32_t, terms);
-    return s->given_start && s->given_symbol && s->given_value ? QC_OK : QC_ERR_NOMEM;
-}
-
-static void write_given(walker *q) {
-    qc__seams *s = q->s;
-    int64_t at = 0;
-    int32_t row = 0;
-    for (int32_t x = 0; x < 2 * s->mesh->n_vertices; x++) {
-        const int32_t cone = s->vertex_cone[x / 2];
-        if (s->vertex_given[x / 2] < 0) continue;
-        s->given_start[row++] = at;
-        if (cone >= 0) {
-            s->given_symbol[at] = qc__position_symbol(s, cone, x % 2);
-            s->given_value[at++] = 1;
-        } else if (has_level(q, x)) {
-            const coordinate *c = &q->coordinate[x];
-            s->given_symbol[at] = qc__level_symbol(s, c->level);
-            s->given_value[at++] = c->sign;
-            for (int64_t i = c->start; i < c->start + c->n; i++) {
-                s->given_symbol[at] = q->pool[i].symbol;
-                s->given_value[at++] = c->offset_sign * q->pool[i].value;
-            }
-        }
-    }
-    s->given_start[row] = at;
-}
-
 static qc_status find_levels(walker *q) {
     const int64_t n_coordinates = 2 * (int64_t)q->s->mesh->n_vertices;
     const int64_t n_symbols = 2 * (int64_t)q->s->n_segments;
-    q->coordinate = QC__NEW(q->ctx, coordinate, n_coordinates);
+    q->out->coordinate = QC__NEW(q->ctx, qc__coordinate, n_coordinates);
     q->queue = QC__NEW(q->ctx, int32_t, n_coordinates);
     q->sum = QC__NEW(q->ctx, double, n_symbols);
     q->in_sum = QC__ZERO(q->ctx, uint8_t, n_symbols);
     q->touched = QC__NEW(q->ctx, int32_t, n_symbols);
-    if (!q->coordinate || !q->queue || !q->sum || !q->in_sum || !q->touched) return QC_ERR_NOMEM;
-    for (int64_t x = 0; x < n_coordinates; x++) q->coordinate[x].level = -1;
+    if (!q->out->coordinate || !q->queue || !q->sum || !q->in_sum || !q->touched)
+        return QC_ERR_NOMEM;
+    for (int64_t x = 0; x < n_coordinates; x++) q->out->coordinate[x].level = -1;
     qc_status status = collect_incidence(q);
     if (status == QC_OK) status = walk_features(q);
     return status == QC_OK ? bind_points(q) : status;
 }
 
-qc_status qc__seams_find_given(qc_ctx *ctx, qc__seams *s, const qc__features *f) {
-    walker q = {.ctx = ctx, .s = s, .f = f};
-    qc_status status = f->axis ? find_levels(&q) : QC_OK;
-    if (status == QC_OK) status = allocate_given(&q);
-    if (status == QC_OK) write_given(&q);
-    void *const blocks[] = {q.coordinate, q.incident_start, q.incident, q.queue, q.pool,
-                            q.sum,        q.in_sum,         q.touched};
+void qc__levels_free(qc__levels *levels) {
+    qc__free(levels->coordinate);
+    qc__free(levels->pool);
+}
+
+qc_status qc__levels_find(qc_ctx *ctx, qc__seams *s, const qc__features *f, qc__levels *out) {
+    walker q = {.ctx = ctx, .s = s, .f = f, .out = out};
+    const qc_status status = find_levels(&q);
+    void *const blocks[] = {q.incident_start, q.incident, q.queue, q.sum, q.in_sum, q.touched};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }
