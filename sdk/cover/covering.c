@@ -8,21 +8,6 @@
 #include "sdk/base/internal.h"
 #include "sdk/mesh/internal.h"
 
-static void covering_destroy(qc_object *object) {
-    qc_mesh *m = (qc_mesh *)object;
-    qc__free((void *)m->position);
-    qc__free((void *)m->face_vertex);
-    qc__free((void *)m->twin);
-    qc__free((void *)m->halfedge_edge);
-    qc__free((void *)m->edge_halfedge);
-    qc__free((void *)m->vertex_corner);
-    qc__free((void *)m->edge_vertex);
-    qc__free((void *)m->face_component);
-    qc__free((void *)m->source_face);
-    qc__free((void *)m->source_vertex);
-    qc__free(m);
-}
-
 /* Corner or halfedge above c on a layer. */
 static int32_t above(int32_t c, int32_t layer) {
     return 3 * (4 * (c / 3) + layer) + c % 3;
@@ -101,7 +86,7 @@ qc_status qc_cover_mesh(qc_ctx *ctx, const qc_cover *cover, qc_mesh **out, int32
                         "the covering of %d faces does not fit 32-bit numbers", (int)m->n_faces);
     qc_mesh *q = QC__ZERO(ctx, qc_mesh, 1);
     if (!q) return QC_ERR_NOMEM;
-    qc_object_init(&q->object, QC_TYPE_MESH, covering_destroy);
+    qc_object_init(&q->object, QC_TYPE_MESH, qc__mesh_destroy);
     qc_status status = fill(ctx, cover, q);
     if (status == QC_OK) status = connect(ctx, m, q);
     int32_t *below = NULL;

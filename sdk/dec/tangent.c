@@ -3,20 +3,11 @@
 #include <math.h>
 
 #include "sdk/dec/internal.h"
-
-static double dot3(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross3(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
+#include "sdk/mesh/internal.h"
 
 /* out = a / |a|; false when a = 0. */
 static bool normalise3(const double a[3], double out[3]) {
-    const double length = sqrt(dot3(a, a));
+    const double length = sqrt(qc__dot3(a, a));
     for (int i = 0; i < 3; i++) out[i] = length > 0 ? a[i] / length : 0;
     return length > 0;
 }
@@ -34,14 +25,14 @@ static void face_frame(const qc_mesh *m, int32_t t, double x[3], double y[3]) {
     edge_vector(m, 3 * t, e0);
     edge_vector(m, 3 * t + 1, e1);
     if (!normalise3(e0, x) && !normalise3(e1, x)) x[0] = 1;
-    cross3(x, e1, n);
-    cross3(n, x, up);
+    qc__cross3(x, e1, n);
+    qc__cross3(n, x, up);
     if (normalise3(up, y)) return;
     int axis = 0;
     for (int i = 1; i < 3; i++)
         if (fabs(x[i]) < fabs(x[axis])) axis = i;
     double unit[3] = {axis == 0, axis == 1, axis == 2};
-    cross3(x, unit, n);
+    qc__cross3(x, unit, n);
     normalise3(n, y);
 }
 
@@ -51,11 +42,11 @@ qc_status qc_tangent_edges(qc_ctx *ctx, const qc_mesh *m, qc_complex *edge) {
         double x[3], y[3], e[3];
         face_frame(m, t, x, y);
         edge_vector(m, 3 * t, e);
-        edge[3 * t].re = dot3(e, x);
+        edge[3 * t].re = qc__dot3(e, x);
         edge[3 * t].im = 0;
         edge_vector(m, 3 * t + 1, e);
-        edge[3 * t + 1].re = dot3(e, x);
-        edge[3 * t + 1].im = dot3(e, y);
+        edge[3 * t + 1].re = qc__dot3(e, x);
+        edge[3 * t + 1].im = qc__dot3(e, y);
         edge[3 * t + 2].re = -edge[3 * t].re - edge[3 * t + 1].re;
         edge[3 * t + 2].im = -edge[3 * t + 1].im;
     }

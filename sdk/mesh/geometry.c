@@ -15,16 +15,6 @@ typedef struct triangle {
     double edge[3][3]; /* ccw, edge k opposite corner k                                          */
 } triangle;
 
-static double dot3(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross3(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 static void triangle_of(const qc_mesh *m, int32_t f, triangle *t) {
     t->longest = 0;
     for (int k = 0; k < 3; k++) {
@@ -33,9 +23,9 @@ static void triangle_of(const qc_mesh *m, int32_t f, triangle *t) {
     }
     for (int k = 0; k < 3 && t->longest > 0; k++)
         for (int i = 0; i < 3; i++) t->edge[k][i] /= t->longest;
-    for (int k = 0; k < 3; k++) t->dot[k] = -dot3(t->edge[(k + 1) % 3], t->edge[(k + 2) % 3]);
-    cross3(t->edge[0], t->edge[1], t->cross);
-    t->twice_area = sqrt(dot3(t->cross, t->cross));
+    for (int k = 0; k < 3; k++) t->dot[k] = -qc__dot3(t->edge[(k + 1) % 3], t->edge[(k + 2) % 3]);
+    qc__cross3(t->edge[0], t->edge[1], t->cross);
+    t->twice_area = sqrt(qc__dot3(t->cross, t->cross));
     t->area = fmax(0.5 * t->twice_area, AREA_FLOOR);
 }
 
@@ -47,12 +37,13 @@ static void unit_normal(const triangle *t, double out[3]) {
     }
     int longest = 0, axis = 0;
     for (int k = 1; k < 3; k++)
-        if (dot3(t->edge[k], t->edge[k]) > dot3(t->edge[longest], t->edge[longest])) longest = k;
+        if (qc__dot3(t->edge[k], t->edge[k]) > qc__dot3(t->edge[longest], t->edge[longest]))
+            longest = k;
     const double *e = t->edge[longest];
     for (int i = 1; i < 3; i++)
         if (fabs(e[i]) < fabs(e[axis])) axis = i;
     double unit[3] = {axis == 0, axis == 1, axis == 2};
-    cross3(e, unit, out);
+    qc__cross3(e, unit, out);
     double length = qc__norm3(out);
     for (int i = 0; i < 3; i++) out[i] = length > 0 ? out[i] / length : i == 2;
 }

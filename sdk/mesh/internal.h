@@ -56,6 +56,9 @@ qc_status qc__mesh_edges(qc_ctx *ctx, qc_mesh *mesh);      /* edge arrays and co
 qc_status qc__mesh_fans(qc_ctx *ctx, qc_mesh *mesh);       /* vertex_corner                     */
 qc_status qc__mesh_components(qc_ctx *ctx, qc_mesh *mesh); /* face_component, n_components       */
 
+/* The destructor of meshes; arrays not there yet are NULL. */
+void qc__mesh_destroy(qc_object *object);
+
 /* Calls with both outputs NULL only count. */
 qc_status qc__mesh_walk_boundary(qc_ctx *ctx, const qc_mesh *mesh, int32_t *n_loops,
                                  int32_t *loop_offset, int32_t *loop_vertex);

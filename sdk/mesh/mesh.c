@@ -3,7 +3,7 @@
 
 #include "sdk/mesh/internal.h"
 
-static void mesh_destroy(qc_object *object) {
+void qc__mesh_destroy(qc_object *object) {
     qc_mesh *m = (qc_mesh *)object;
     qc__free((void *)m->position);
     qc__free((void *)m->face_vertex);
@@ -110,7 +110,7 @@ qc_status qc_mesh_create_from(qc_ctx *ctx, int32_t n_vertices, const double *pos
     if (status != QC_OK) return status;
     qc_mesh *m = QC__ZERO(ctx, qc_mesh, 1);
     if (!m) return QC_ERR_NOMEM;
-    qc_object_init(&m->object, QC_TYPE_MESH, mesh_destroy);
+    qc_object_init(&m->object, QC_TYPE_MESH, qc__mesh_destroy);
     bool failed = false;
     m->n_vertices = n_vertices;
     m->n_faces = n_faces;

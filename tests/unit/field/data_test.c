@@ -1,18 +1,6 @@
 /* Reference fields have the indices their authors drew; index sums hold on every data mesh. */
-#include "tests/test_data.h"
+#include "read_mesh.h"
 #include "surfaces.h"
-
-static qc_mesh *read_mesh(qc_ctx *ctx, const char *name) {
-    char path[TEST_DATA_PATH];
-    qc_polygon_mesh *soup = NULL;
-    qc_mesh *mesh = NULL;
-    qc_repair_report *report = NULL;
-    assert_int_equal(qc_polygon_mesh_read(ctx, test_data(name, path), &soup), QC_OK);
-    assert_int_equal(qc_mesh_repair(ctx, soup, &mesh, &report), QC_OK);
-    qc_object_release(soup);
-    qc_object_release(report);
-    return mesh;
-}
 
 static void reference_fields_have_their_indices(void **state) {
     qc_ctx *ctx = *state;

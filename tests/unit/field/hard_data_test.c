@@ -1,19 +1,6 @@
 /* Hard features on models: room, exact crosses, open sectors, at every step. */
-#include "tests/test_data.h"
-
 #include "hard.h"
-
-static qc_mesh *read_mesh(qc_ctx *ctx, const char *name) {
-    char path[TEST_DATA_PATH];
-    qc_polygon_mesh *soup = NULL;
-    qc_mesh *mesh = NULL;
-    qc_repair_report *report = NULL;
-    assert_int_equal(qc_polygon_mesh_read(ctx, test_data(name, path), &soup), QC_OK);
-    assert_int_equal(qc_mesh_repair(ctx, soup, &mesh, &report), QC_OK);
-    qc_object_release(soup);
-    qc_object_release(report);
-    return mesh;
-}
+#include "read_mesh.h"
 
 static void models_keep_their_features(void **state) {
     qc_ctx *ctx = *state;

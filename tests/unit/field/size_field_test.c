@@ -89,6 +89,14 @@ static void lengths_grow_slowly(void **state) {
     unlink(path);
 }
 
+static void assert_refused(qc_ctx *ctx, const qc_mesh *m, const qc_size_options *o,
+                           qc_status status, int64_t where) {
+    qc_sizing *s = NULL;
+    assert_int_equal(qc_sizing_create_varying(ctx, m, 0, o, &s), status);
+    assert_int_equal(qc_ctx_error(ctx)->where, where);
+    assert_null(s);
+}
+
 static void wrong_files_are_refused(void **state) {
     static const char path[] = "size_field_test_bad.txt";
     static const struct {
@@ -100,18 +108,14 @@ static void wrong_files_are_refused(void **state) {
     o.edge_length = 1;
     o.path = path;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        qc_sizing *s = NULL;
         write_file(path, cases[i].text);
-        assert_int_equal(qc_sizing_create_varying(*state, m, 0, &o, &s), QC_ERR_INPUT);
-        assert_int_equal(qc_ctx_error(*state)->where, cases[i].where);
-        assert_null(s);
+        assert_refused(*state, m, &o, QC_ERR_INPUT, cases[i].where);
     }
     unlink(path);
-    qc_sizing *s = NULL;
-    assert_int_equal(qc_sizing_create_varying(*state, m, 0, &o, &s), QC_ERR_IO);
+    assert_refused(*state, m, &o, QC_ERR_IO, -1);
     o.path = NULL;
     o.painted = true;
-    assert_int_equal(qc_sizing_create_varying(*state, m, 0, &o, &s), QC_ERR_ARGUMENT);
+    assert_refused(*state, m, &o, QC_ERR_ARGUMENT, -1);
     qc_object_release(m);
 }
 
@@ -268,20 +272,16 @@ static void wrong_directions_are_refused(void **state) {
     o.edge_length = 1;
     o.path = path;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        qc_sizing *s = NULL;
         FILE *f = fopen(path, "w");
         assert_non_null(f);
         for (int32_t k = 0; k < m->n_faces; k++) fputs(k == 3 ? cases[i].row : "1 2 1 0 0\n", f);
         fclose(f);
-        assert_int_equal(qc_sizing_create_varying(*state, m, 0, &o, &s), cases[i].status);
-        assert_int_equal(qc_ctx_error(*state)->where, cases[i].status == QC_ERR_INPUT ? 4 : 3);
-        assert_null(s);
+        assert_refused(*state, m, &o, cases[i].status, cases[i].status == QC_ERR_INPUT ? 4 : 3);
     }
     unlink(path);
     o.path = NULL;
     o.anisotropy = 0.5;
-    qc_sizing *s = NULL;
-    assert_int_equal(qc_sizing_create_varying(*state, m, 0, &o, &s), QC_ERR_ARGUMENT);
+    assert_refused(*state, m, &o, QC_ERR_ARGUMENT, -1);
     qc_object_release(m);
 }
 

@@ -67,15 +67,9 @@ static inline maps_list maps_fan(int turns, bool closed, int k, double n, double
             }
         for (int j = 0; j < k; j++)
             for (int i = 0; i < k; i++) {
-                int32_t w[4];
-                double p[8];
-                for (int c = 0; c < 4; c++) {
-                    const int at = (j + (c >= 2)) * (k + 1) + i + (c == 1 || c == 2);
-                    w[c] = id[at];
-                    memcpy(p + 2 * c, uv + 2 * at, 2 * sizeof *p);
-                }
                 /* a triangle with one corner at each end of a side of the fan folds easily */
-                maps_square(&l, w, p, (i == k - 1 && j == 0) || (i == 0 && j == k - 1));
+                maps_block_square(&l, id, uv, k, i, j,
+                                  (i == k - 1 && j == 0) || (i == 0 && j == k - 1));
             }
         free(uv);
         free(id);

@@ -2,33 +2,42 @@
  * error. */
 #include "unit/map/maps.h"
 
+/* Keeps the faces whose flag is set and the vertices they use. */
+static void keep_faces(maps_list *l, const bool *keep) {
+    int32_t kept = 0;
+    for (int32_t t = 0; t < l->n_faces; t++) {
+        if (!keep[t]) continue;
+        memmove(l->face + 3 * kept, l->face + 3 * t, 3 * sizeof *l->face);
+        memmove(l->uv + 6 * kept, l->uv + 6 * t, 6 * sizeof *l->uv);
+        kept++;
+    }
+    l->n_faces = kept;
+    int32_t *number = calloc((size_t)l->n_vertices, sizeof *number), used = 0;
+    for (int32_t c = 0; c < 3 * kept; c++) number[l->face[c]] = 1;
+    for (int32_t v = 0; v < l->n_vertices; v++) {
+        if (!number[v]) continue;
+        memmove(l->position + 3 * used, l->position + 3 * v, 3 * sizeof *l->position);
+        number[v] = used++;
+    }
+    for (int32_t c = 0; c < 3 * kept; c++) l->face[c] = number[l->face[c]];
+    l->n_vertices = used;
+    free(number);
+}
+
 /* A plane of n x n cells, k x k squares in each, with rectangles of squares (x0, y0, x1, y1)
  * removed. */
 static maps_list plane_with_holes(int n, int k, double angle, int n_holes, const int (*hole)[4],
                                   maps_rng *r) {
     maps_list l = maps_plane(n * k, n, n, 0, angle, 0.1 * (angle != 0), 0, r);
-    int32_t kept = 0;
+    bool *keep = calloc((size_t)l.n_faces, sizeof *keep);
     for (int32_t t = 0; t < l.n_faces; t++) {
         const int x = t / 2 % (n * k), y = t / 2 / (n * k);
-        bool inside = false;
+        keep[t] = true;
         for (int i = 0; i < n_holes; i++)
-            inside |= x >= hole[i][0] && y >= hole[i][1] && x < hole[i][2] && y < hole[i][3];
-        if (inside) continue;
-        memmove(l.face + 3 * kept, l.face + 3 * t, 3 * sizeof *l.face);
-        memmove(l.uv + 6 * kept, l.uv + 6 * t, 6 * sizeof *l.uv);
-        kept++;
+            keep[t] &= x < hole[i][0] || y < hole[i][1] || x >= hole[i][2] || y >= hole[i][3];
     }
-    l.n_faces = kept;
-    int32_t *number = calloc((size_t)l.n_vertices, sizeof *number), used = 0;
-    for (int32_t c = 0; c < 3 * kept; c++) number[l.face[c]] = 1;
-    for (int32_t v = 0; v < l.n_vertices; v++) {
-        if (!number[v]) continue;
-        memmove(l.position + 3 * used, l.position + 3 * v, 3 * sizeof *l.position);
-        number[v] = used++;
-    }
-    for (int32_t c = 0; c < 3 * kept; c++) l.face[c] = number[l.face[c]];
-    l.n_vertices = used;
-    free(number);
+    keep_faces(&l, keep);
+    free(keep);
     maps_gauge(&l, r);
     return l;
 }
@@ -161,24 +170,11 @@ static void lost_handles_are_refused(void **state) {
     maps_rng r = {28};
     const double a[2] = {6, 0}, b[2] = {0, 9};
     maps_list l = maps_torus(72, a, b, 0, &r); /* 12 x 8 squares a cell */
-    int32_t kept = 0;
-    for (int32_t t = 0; t < l.n_faces; t++) { /* all but one square of the ring */
-        if (t / 2 / 72 >= 8 && t / 2 / 72 < 16 && t / 2 % 72 < 71) continue;
-        memmove(l.face + 3 * kept, l.face + 3 * t, 3 * sizeof *l.face);
-        memmove(l.uv + 6 * kept, l.uv + 6 * t, 6 * sizeof *l.uv);
-        kept++;
-    }
-    l.n_faces = kept;
-    int32_t *number = calloc((size_t)l.n_vertices, sizeof *number), used = 0;
-    for (int32_t c = 0; c < 3 * kept; c++) number[l.face[c]] = 1;
-    for (int32_t v = 0; v < l.n_vertices; v++) {
-        if (!number[v]) continue;
-        memmove(l.position + 3 * used, l.position + 3 * v, 3 * sizeof *l.position);
-        number[v] = used++;
-    }
-    for (int32_t c = 0; c < 3 * kept; c++) l.face[c] = number[l.face[c]];
-    l.n_vertices = used;
-    free(number);
+    bool *keep = calloc((size_t)l.n_faces, sizeof *keep);
+    for (int32_t t = 0; t < l.n_faces; t++) /* all but one square of the ring */
+        keep[t] = t / 2 / 72 < 8 || t / 2 / 72 >= 16 || t / 2 % 72 == 71;
+    keep_faces(&l, keep);
+    free(keep);
     assert_int_equal(extract(ctx, &l, -1, 1), QC_ERR_FAILED);
     assert_non_null(strstr(qc_ctx_error(ctx)->text, "a neck or handle is narrower than a quad"));
 }

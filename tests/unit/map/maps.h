@@ -85,6 +85,20 @@ static inline void maps_square(maps_list *l, const int32_t v[4], const double uv
         maps_triangle(l, w, p);
     }
 }
+
+/* Square (i, j) of a block of k x k, whose vertices and parameters are given row by row. */
+static inline void maps_block_square(maps_list *l, const int32_t *id, const double *uv, int k,
+                                     int i, int j, bool diagonal) {
+    int32_t w[4];
+    double p[8];
+    for (int c = 0; c < 4; c++) {
+        const int at = (j + (c >= 2)) * (k + 1) + i + (c == 1 || c == 2);
+        w[c] = id[at];
+        memcpy(p + 2 * c, uv + 2 * at, 2 * sizeof *p);
+    }
+    maps_square(l, w, p, diagonal);
+}
+
 /* Applies a random automorphism of the grid to the chart of every triangle. */
 static inline void maps_gauge(maps_list *l, maps_rng *r) {
     for (int32_t t = 0; t < l->n_faces; t++) {
@@ -211,14 +225,7 @@ static inline maps_list maps_voxels(int size, const uint8_t *voxel, int k, doubl
                 }
             for (int j = 0; j < k; j++)
                 for (int i = 0; i < k; i++) {
-                    int32_t w[4];
-                    double p[8];
-                    for (int c = 0; c < 4; c++) {
-                        const int at = (j + (c >= 2)) * (k + 1) + i + (c == 1 || c == 2);
-                        w[c] = id[at];
-                        memcpy(p + 2 * c, uv + 2 * at, 2 * sizeof *p);
-                    }
-                    maps_square(&l, w, p, maps_random(r) & 1);
+                    maps_block_square(&l, id, uv, k, i, j, maps_random(r) & 1);
                 }
         }
     }

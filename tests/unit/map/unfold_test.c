@@ -147,49 +147,54 @@ static void test_folded_maps(void **state) {
     qc_ctx_free(ctx);
 }
 
-static void test_good_maps_stay(void **state) {
-    (void)state;
+static void on_all_cases(void (*property)(qc_ctx *ctx, fixture *k)) {
     qc_ctx *ctx = context(1);
     for (int i = 0; i < N_CASES; i++) {
         fixture k = {0};
-        qc__unfolding result = {0};
         open_fixture(&k, ctx, i);
-        const size_t size = sizeof *k.f * 3 * (size_t)k.s->mesh->n_faces;
-        assert_injective(&k);
-        qc_complex *f = ARRAY(qc_complex, 3 * (int64_t)k.s->mesh->n_faces);
-        memcpy(f, k.f, size);
-        must(ctx, unfold(ctx, &k, &result));
-        assert_int_equal(result.evaluations, 0);
-        assert_memory_equal(f, k.f, size);
-        free(f);
+        property(ctx, &k);
         close_fixture(&k);
     }
     qc_ctx_free(ctx);
 }
 
+static void stays(qc_ctx *ctx, fixture *k) {
+    qc__unfolding result = {0};
+    const size_t size = sizeof *k->f * 3 * (size_t)k->s->mesh->n_faces;
+    assert_injective(k);
+    qc_complex *f = ARRAY(qc_complex, 3 * (int64_t)k->s->mesh->n_faces);
+    memcpy(f, k->f, size);
+    must(ctx, unfold(ctx, k, &result));
+    assert_int_equal(result.evaluations, 0);
+    assert_memory_equal(f, k->f, size);
+    free(f);
+}
+
+static void test_good_maps_stay(void **state) {
+    (void)state;
+    on_all_cases(stays);
+}
+
+static void keeps_periods(qc_ctx *ctx, fixture *k) {
+    qc__unfolding result = {0};
+    double *y = ARRAY(double, k->seams->n_free);
+    memcpy(y, k->y, sizeof *y * (size_t)k->seams->n_free);
+    fold(k, 0.5, 2);
+    for (int32_t j = 0; j < k->seams->n_free; j++) k->y[j] = y[j];
+    fold(k, 0, 0);
+    free(k->P);
+    k->P = NULL;
+    must(ctx, unfold(ctx, k, &result));
+    assert_int_equal(result.folded + result.wrong, 0);
+    assert_injective(k);
+    assert_memory_equal(y, k->y, sizeof *y * (size_t)k->seams->n_free);
+    free(y);
+}
+
 /* Without a period matrix the periods stay. */
 static void test_fixed_periods(void **state) {
     (void)state;
-    qc_ctx *ctx = context(1);
-    for (int i = 0; i < N_CASES; i++) {
-        fixture k = {0};
-        qc__unfolding result = {0};
-        open_fixture(&k, ctx, i);
-        double *y = ARRAY(double, k.seams->n_free);
-        memcpy(y, k.y, sizeof *y * (size_t)k.seams->n_free);
-        fold(&k, 0.5, 2);
-        for (int32_t j = 0; j < k.seams->n_free; j++) k.y[j] = y[j];
-        fold(&k, 0, 0);
-        free(k.P);
-        k.P = NULL;
-        must(ctx, unfold(ctx, &k, &result));
-        assert_int_equal(result.folded + result.wrong, 0);
-        assert_injective(&k);
-        assert_memory_equal(y, k.y, sizeof *y * (size_t)k.seams->n_free);
-        free(y);
-        close_fixture(&k);
-    }
-    qc_ctx_free(ctx);
+    on_all_cases(keeps_periods);
 }
 
 static void test_threads(void **state) {

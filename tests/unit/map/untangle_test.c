@@ -124,6 +124,35 @@ static void assert_same_seams(const clean *k, const qc_grid_map *grid) {
     }
 }
 
+/* A scrambled map, untangled. */
+typedef struct trial {
+    double *uv;
+    qc_corner_map *map, *out;
+    qc_grid_map *before, *after;
+} trial;
+
+/* Takes uv. relaxed: with the map before rounding; options: NULL = default. */
+static trial untangle(const clean *k, double *uv, bool relaxed,
+                      const qc_untangle_options *options) {
+    qc_ctx *ctx = k->s->ctx;
+    trial t = {.uv = uv, .map = with_values(ctx, k->map, k->grid->rotation, uv)};
+    if (relaxed) must(ctx, qc_corner_map_set_relaxed(ctx, t.map, k->relaxed));
+    t.before = grid_of(ctx, t.map);
+    assert_same_seams(k, t.before);
+    must(ctx, qc_map_untangle(ctx, t.map, options, &t.out));
+    t.after = grid_of(ctx, t.out);
+    assert_same_seams(k, t.after);
+    return t;
+}
+
+static void trial_free(trial *t) {
+    qc_object_release(t->after);
+    qc_object_release(t->before);
+    qc_object_release(t->out);
+    qc_object_release(t->map);
+    free(t->uv);
+}
+
 static void scrambled_maps_are_untangled(void **state) {
     (void)state;
     qc_ctx *ctx = context(1);
@@ -133,22 +162,12 @@ static void scrambled_maps_are_untangled(void **state) {
         for (int round = 0; round < 4; round++) {
             const int32_t centre = (int32_t)(fabs(uniform(&random)) * k->s->mesh->n_vertices);
             double *uv = scrambled(k, centre, 2 + round, 1.5, &random);
-            qc_corner_map *map = with_values(ctx, k->map, k->grid->rotation, uv), *out = NULL;
-            if (round % 2) must(ctx, qc_corner_map_set_relaxed(ctx, map, k->relaxed));
-            qc_grid_map *before = grid_of(ctx, map);
-            assert_true(before->n_flipped > 3);
-            assert_same_seams(k, before);
-            must(ctx, qc_map_untangle(ctx, map, NULL, &out));
-            qc_grid_map *after = grid_of(ctx, out);
-            if (after->n_flipped + after->n_degenerate > 0)
+            trial t = untangle(k, uv, round % 2, NULL);
+            assert_true(t.before->n_flipped > 3);
+            if (t.after->n_flipped + t.after->n_degenerate > 0)
                 fail_msg("%s, %d rings about %d: %d of %d flips left", CASES[i].shape, 2 + round,
-                         (int)centre, (int)after->n_flipped, (int)before->n_flipped);
-            assert_same_seams(k, after);
-            qc_object_release(after);
-            qc_object_release(before);
-            qc_object_release(out);
-            qc_object_release(map);
-            free(uv);
+                         (int)centre, (int)t.after->n_flipped, (int)t.before->n_flipped);
+            trial_free(&t);
         }
         clean_free(k);
     }
@@ -161,19 +180,10 @@ static void a_wholly_scrambled_sphere_is_untangled(void **state) {
     qc_ctx *ctx = context(1);
     uint64_t random = 5;
     clean *k = clean_create(ctx, &CASES[0], 300);
-    double *uv = scrambled(k, 0, 1000, 1.0, &random);
-    qc_corner_map *map = with_values(ctx, k->map, k->grid->rotation, uv), *out = NULL;
-    qc_grid_map *before = grid_of(ctx, map);
-    assert_true(before->n_flipped > k->s->mesh->n_faces / 4);
-    must(ctx, qc_map_untangle(ctx, map, NULL, &out));
-    qc_grid_map *after = grid_of(ctx, out);
-    assert_int_equal(after->n_flipped + after->n_degenerate, 0);
-    assert_same_seams(k, after);
-    qc_object_release(after);
-    qc_object_release(before);
-    qc_object_release(out);
-    qc_object_release(map);
-    free(uv);
+    trial t = untangle(k, scrambled(k, 0, 1000, 1.0, &random), false, NULL);
+    assert_true(t.before->n_flipped > k->s->mesh->n_faces / 4);
+    assert_int_equal(t.after->n_flipped + t.after->n_degenerate, 0);
+    trial_free(&t);
     clean_free(k);
     qc_ctx_free(ctx);
 }
@@ -187,17 +197,13 @@ static void threads_change_nothing(void **state) {
         uint64_t random = 13;
         clean *k = clean_create(ctx, &CASES[3], 600);
         const size_t bytes = 6 * (size_t)k->s->mesh->n_faces * sizeof(double);
-        double *uv = scrambled(k, 17, 4, 1.5, &random);
-        qc_corner_map *map = with_values(ctx, k->map, k->grid->rotation, uv), *out = NULL;
-        must(ctx, qc_map_untangle(ctx, map, NULL, &out));
+        trial t = untangle(k, scrambled(k, 17, 4, 1.5, &random), false, NULL);
         if (!first) {
             first = ARRAY(double, 6 * (int64_t)k->s->mesh->n_faces);
-            memcpy(first, out->uv, bytes);
+            memcpy(first, t.out->uv, bytes);
         }
-        assert_memory_equal(first, out->uv, bytes);
-        qc_object_release(out);
-        qc_object_release(map);
-        free(uv);
+        assert_memory_equal(first, t.out->uv, bytes);
+        trial_free(&t);
         clean_free(k);
         qc_ctx_free(ctx);
     }
@@ -210,20 +216,11 @@ static void without_iterations_the_best_map_is_returned(void **state) {
     qc_ctx *ctx = context(1);
     uint64_t random = 3;
     clean *k = clean_create(ctx, &CASES[0], 600);
-    double *uv = scrambled(k, 40, 3, 1.5, &random);
-    qc_corner_map *map = with_values(ctx, k->map, k->grid->rotation, uv), *out = NULL;
     qc_untangle_options options = QC_UNTANGLE_OPTIONS_INIT;
     options.max_iterations = 0;
-    qc_grid_map *before = grid_of(ctx, map);
-    must(ctx, qc_map_untangle(ctx, map, &options, &out));
-    qc_grid_map *after = grid_of(ctx, out);
-    assert_int_equal(before->n_flipped, after->n_flipped);
-    assert_same_seams(k, after);
-    qc_object_release(after);
-    qc_object_release(before);
-    qc_object_release(out);
-    qc_object_release(map);
-    free(uv);
+    trial t = untangle(k, scrambled(k, 40, 3, 1.5, &random), false, &options);
+    assert_int_equal(t.before->n_flipped, t.after->n_flipped);
+    trial_free(&t);
     clean_free(k);
     qc_ctx_free(ctx);
 }
@@ -246,36 +243,7 @@ static double distortion(const clean *k, const qc_corner_map *map) {
     return energy;
 }
 
-/* Evening out lowers the distortion, keeps seams, and turns no face over. */
-static void what_was_moved_is_evened_out(void **state) {
-    (void)state;
-    qc_ctx *ctx = context(1);
-    uint64_t random = 5;
-    for (int i = 0; i < N_CASES; i++) {
-        clean *k = clean_create(ctx, &CASES[i], 600);
-        double *uv = scrambled(k, k->s->mesh->n_vertices / 3, 4, 1.5, &random), last = INFINITY;
-        qc_corner_map *map = with_values(ctx, k->map, k->grid->rotation, uv);
-        for (int32_t steps = 0; steps <= 80; steps = 4 * steps + 5) {
-            qc_untangle_options options = QC_UNTANGLE_OPTIONS_INIT;
-            qc_corner_map *out = NULL;
-            options.relax = steps;
-            must(ctx, qc_map_untangle(ctx, map, &options, &out));
-            qc_grid_map *grid = grid_of(ctx, out);
-            assert_int_equal(grid->n_flipped + grid->n_degenerate, 0);
-            assert_same_seams(k, grid);
-            const double energy = distortion(k, out);
-            assert_true(energy < last || (steps > 20 && energy <= last * (1 + 1e-6)));
-            last = energy;
-            qc_object_release(grid);
-            qc_object_release(out);
-        }
-        free(uv);
-        qc_object_release(map);
-        clean_free(k);
-    }
-    qc_ctx_free(ctx);
-}
-
+/* The distortion after so many steps of evening out. */
 static double evened(const clean *k, const qc_corner_map *map, int32_t steps) {
     qc_untangle_options options = QC_UNTANGLE_OPTIONS_INIT;
     qc_corner_map *out = NULL;
@@ -288,6 +256,27 @@ static double evened(const clean *k, const qc_corner_map *map, int32_t steps) {
     qc_object_release(grid);
     qc_object_release(out);
     return energy;
+}
+
+/* Evening out lowers the distortion, keeps seams, and turns no face over. */
+static void what_was_moved_is_evened_out(void **state) {
+    (void)state;
+    qc_ctx *ctx = context(1);
+    uint64_t random = 5;
+    for (int i = 0; i < N_CASES; i++) {
+        clean *k = clean_create(ctx, &CASES[i], 600);
+        double *uv = scrambled(k, k->s->mesh->n_vertices / 3, 4, 1.5, &random), last = INFINITY;
+        qc_corner_map *map = with_values(ctx, k->map, k->grid->rotation, uv);
+        for (int32_t steps = 0; steps <= 80; steps = 4 * steps + 5) {
+            const double energy = evened(k, map, steps);
+            assert_true(energy < last || (steps > 20 && energy <= last * (1 + 1e-6)));
+            last = energy;
+        }
+        free(uv);
+        qc_object_release(map);
+        clean_free(k);
+    }
+    qc_ctx_free(ctx);
 }
 
 /* A map which is squashed but nowhere folded is evened out too. */
