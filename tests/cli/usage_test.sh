@@ -78,5 +78,15 @@ run 0 stages --json
 out_says '"id": "qc.size"' '"unit": "deg"' '"default"'
 run 0 stages --markdown
 out_says '^## qc.round' '^| parameter'
+# the page of each stage names all its parameters
+cp out stages.md
+pages=$(cd "$(dirname "$0")/../../stages" && pwd)
+awk '/^## /{s=$2;p=0} /^$/{p=0} /^\| parameter/{p=1;next} p&&/^\| `/{gsub(/`/,"",$2);print s,$2}' stages.md > parameters
+[ "$(wc -l < parameters)" -gt 60 ] || fail 'parameters are missing'
+while read -r stage name; do
+    page=$(grep -l "^# .*$stage\>" "$pages"/*/*.md)
+    [ -n "$page" ] || fail "no page for $stage"
+    grep -q "\`[^\`]*\<$name\>" "$page" || fail "$page does not name $name of $stage"
+done < parameters
 [ -e out.obj ] && fail 'an output was written'
 finish
