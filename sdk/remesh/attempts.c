@@ -147,7 +147,7 @@ static bool worth_trying(const climb *c, rung next, rung before) {
 static int32_t count_dropped(const qc__concessions *f, int32_t keep) {
     const int32_t part = keep == LESS_QUARTER ? (f->n + 3) / 4
                          : keep == LESS_HALF  ? (f->n + 1) / 2
-                         : keep == BOUNDARIES ? f->n
+                         : keep == BOUNDARIES ? f->n - f->n_boundaries
                                               : 0;
     return part > f->n_gone ? part : f->n_gone + 1;
 }

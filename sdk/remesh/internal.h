@@ -49,17 +49,16 @@ qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t fir
 /* Chains of hard features and those of them which are given up. */
 typedef struct qc__concessions {
     const qc_features *features; /* retained: as found, before any is given up */
-    int32_t n_chains;
+    int32_t n, n_boundaries;
     int32_t *of;             /* n_edges: chain, -1 */
-    qc_feature_chain *chain; /* n_chains */
-    int32_t n, *order;       /* those which are no boundary, the weakest first */
-    uint8_t *gone;           /* n_chains */
+    qc_feature_chain *chain; /* n */
+    uint8_t *gone;           /* n */
     int32_t n_gone, named;
 } qc__concessions;
 qc_status qc__concessions_create(qc_ctx *ctx, const qc_features *features, qc__concessions *out);
 void qc__concessions_clear(qc__concessions *concessions);
-/* Gives up chains until n are gone: those within two quads of the place (NULL = none is known),
- * then others, the weakest first; each is named by a warning. */
+/* Gives up chains until n are gone: the weakest near the place first (NULL = none is known); each
+ * is named by a warning. */
 qc_status qc__concessions_grow(qc_ctx *ctx, qc__concessions *concessions, int32_t n,
                                const double *place, double quad, const char *reason);
 /* The features which are left. */

@@ -64,7 +64,7 @@ static int is_named(const qc_mesh *mesh, const qc_feature_chain *chain) {
         int a, b;
         double length, angle;
         if (sscanf(run_seen.warning[i],
-                   "feature from vertex %d to %d, %lf quads long, %lf degrees, is no edge", &a, &b,
+                   "crease from vertex %d to %d, %lf quads long, %lf degrees, is no edge", &a, &b,
                    &length, &angle) == 4 &&
             a == from && b == to && length > 0 &&
             fabs(angle - chain->angle * 57.29577951308232) < 0.6)

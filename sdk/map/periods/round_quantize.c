@@ -10,6 +10,7 @@
 static const double read_tolerance = 1e-3; /* of the integers read from the values */
 static const double noteworthy = 0.1;      /* more quads than asked for ... */
 static const double most_times = 8;        /* ... and too many of them */
+static const double few = 0.01;            /* edges of an open boundary, by quad */
 
 typedef struct quantizing {
     qc__rounding *r;
@@ -127,7 +128,7 @@ static qc_status blend_imprint(quantizing *q) {
 }
 
 /* Vertices of boundaries which are no features stay in the coarse complex, so their edges take
- * about a unit each: whether they are not much shorter on average at this scale. */
+ * about a unit each: whether they are few, or not much shorter on average at this scale. */
 static bool fits_boundary(const quantizing *q, double scale) {
     const qc__rounding *r = q->r;
     double length = 0;
@@ -139,7 +140,8 @@ static bool fits_boundary(const quantizing *q, double scale) {
         length += scale * hypot(b.re - a.re, b.im - a.im);
         n++;
     }
-    return n <= most_times * length;
+    const double quads = scale * scale * qc__round_area(r->f, r->mesh->n_faces);
+    return n <= few * quads || n <= most_times * length;
 }
 
 static qc_status quantize(quantizing *q, bool *done) {
