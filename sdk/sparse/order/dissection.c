@@ -41,7 +41,9 @@ static bool cut(const qc__dissection *D, const qc__piece *P, qc__piece child[2])
 
 static void dissect(const qc__dissection *D, const qc__piece *P) {
     qc__piece child[2];
-    if (P->n <= LEAF || (P->m < 2 && P->n <= QC__SMALL_PIECE)) {
+    if (P->n <= D->leaf) {
+        leave(D, P);
+    } else if (P->n <= LEAF || (P->m < 2 && P->n <= QC__SMALL_PIECE)) {
         const qc__cover C = qc__piece_view(D, P);
         qc__minimum_degree(&C, D->perm + P->row);
     } else if (cut(D, P, child)) {
@@ -58,7 +60,7 @@ static void cut_tasks(void *arg, int64_t begin, int64_t end, uint32_t worker) {
     for (int64_t k = begin; k < end; k++) {
         task *t = &T->task[k];
         t->child[0].n = t->child[1].n = 0;
-        if (!cut(T->D, &t->piece, t->child)) leave(T->D, &t->piece);
+        if (t->piece.n <= T->D->leaf || !cut(T->D, &t->piece, t->child)) leave(T->D, &t->piece);
     }
 }
 
@@ -186,8 +188,9 @@ static qc_status order_left(qc_ctx *ctx, qc__pattern A, const qc__dissection *D)
     return status;
 }
 
-qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const double *position, int32_t *perm) {
-    qc__dissection D = {.perm = perm};
+qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const double *position, int32_t leaf,
+                               int32_t *perm) {
+    qc__dissection D = {.perm = perm, .leaf = leaf};
     qc_status status = qc__cover_create(ctx, A, &D.buffer[0]);
     if (status == QC_OK && D.buffer[0].m == 0) { /* a diagonal matrix */
         for (int32_t k = 0; k < A.n; k++) perm[k] = k;

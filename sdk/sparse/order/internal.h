@@ -108,6 +108,7 @@ typedef struct qc__dissection {
     qc__cut_work work;
     int16_t *center; /* 3 per cluster, or NULL */
     int32_t *perm;   /* n */
+    int32_t leaf;    /* pieces of at most so many rows are left to another method */
     bool *left;      /* n: perm[k..k + work.flow[2 k]) is left to another method */
 } qc__dissection;
 
@@ -125,8 +126,9 @@ void qc__piece_split(const qc__dissection *D, const qc__piece *P, const int32_t 
 qc_status qc__amd(qc_ctx *ctx, qc__pattern A, int32_t *perm);
 qc_status qc__amd_rows(qc_ctx *ctx, qc__pattern A, int32_t n, int32_t *perm, int32_t *place);
 
-/* dissection.c; position: 3 n or NULL */
-qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const double *position, int32_t *perm);
+/* dissection.c; position: 3 n or NULL; leaf: pieces of at most so many rows are ordered by AMD. */
+qc_status qc__order_dissection(qc_ctx *ctx, qc__pattern A, const double *position, int32_t leaf,
+                               int32_t *perm);
 
 /* quotient.c: group: n, out, from the caller's ids or of indistinguishable rows; *count groups. */
 qc_status qc__find_groups(qc_ctx *ctx, qc__pattern A, const int32_t *given, int32_t *group,

@@ -34,7 +34,7 @@ static void group_positions(int32_t n, const int32_t *group, int32_t count, cons
 
 /* Orders the groups by the method and expands. */
 static qc_status order_groups(qc_ctx *ctx, qc__pattern A, const int32_t *group, int32_t count,
-                              const qc_analyze_options *o, int32_t *perm) {
+                              const qc_analyze_options *o, int32_t leaf, int32_t *perm) {
     int64_t *colptr = NULL;
     int32_t *row = NULL, *order = QC__NEW(ctx, int32_t, count);
     double *position = o->position ? QC__NEW(ctx, double, 4 * (int64_t)count) : NULL;
@@ -44,8 +44,9 @@ static qc_status order_groups(qc_ctx *ctx, qc__pattern A, const int32_t *group, 
     if (status == QC_OK) {
         const qc__pattern Q = {count, colptr, row};
         if (position) group_positions(A.n, group, count, o->position, position);
-        status = o->ordering == QC_ORDER_DISSECTION ? qc__order_dissection(ctx, Q, position, order)
-                                                    : qc__amd(ctx, Q, order);
+        status = o->ordering == QC_ORDER_DISSECTION
+                     ? qc__order_dissection(ctx, Q, position, leaf, order)
+                     : qc__amd(ctx, Q, order);
     }
     if (status == QC_OK) status = qc__expand_groups(ctx, A.n, group, count, order, perm);
     qc__free(colptr);
@@ -57,14 +58,14 @@ static qc_status order_groups(qc_ctx *ctx, qc__pattern A, const int32_t *group, 
 
 /* Without a hint the groups are the indistinguishable rows; where these are few the rows remain. */
 static qc_status order_quotient(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *o,
-                                int32_t *perm) {
+                                int32_t leaf, int32_t *perm) {
     int32_t count = 0, *group = QC__NEW(ctx, int32_t, A.n);
     qc_status status = group ? qc__find_groups(ctx, A, o->group, group, &count) : QC_ERR_NOMEM;
     if (status == QC_OK) {
         if (!o->group && count > A.n / 10 * 9)
             status = qc__amd(ctx, A, perm);
         else
-            status = order_groups(ctx, A, group, count, o, perm);
+            status = order_groups(ctx, A, group, count, o, leaf, perm);
     }
     qc__free(group);
     return status;
@@ -90,14 +91,14 @@ static qc_status check_hints(qc_ctx *ctx, int32_t n, const qc_analyze_options *o
 }
 
 static qc_status order_dissection(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *o,
-                                  int32_t *perm) {
-    return o->group ? order_quotient(ctx, A, o, perm)
-                    : qc__order_dissection(ctx, A, o->position, perm);
+                                  int32_t leaf, int32_t *perm) {
+    return o->group ? order_quotient(ctx, A, o, leaf, perm)
+                    : qc__order_dissection(ctx, A, o->position, leaf, perm);
 }
 
-/* Below this, one factorisation gains less than dissection costs (docs/theory/sparse-ordering.md).
- */
-enum { SMALL = 500000 };
+/* One factorisation repays dissection only above the first size, and only down to pieces of the
+ * second (docs/theory/sparse-ordering.md). */
+enum { SMALL = 250000, PIECE = 20000 };
 
 qc_status qc__order(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *options, int32_t *perm) {
     qc_analyze_options o = QC_ANALYZE_OPTIONS_INIT;
@@ -112,13 +113,13 @@ qc_status qc__order(qc_ctx *ctx, qc__pattern A, const qc_analyze_options *option
         for (int32_t k = 0; k < A.n; k++) perm[k] = k;
         return QC_OK;
     case QC_ORDER_AUTO:
-        return A.n < SMALL ? qc__amd(ctx, A, perm) : order_dissection(ctx, A, &o, perm);
+        return A.n < SMALL ? qc__amd(ctx, A, perm) : order_dissection(ctx, A, &o, PIECE, perm);
     case QC_ORDER_AMD:
         return qc__amd(ctx, A, perm);
     case QC_ORDER_QUOTIENT:
-        return order_quotient(ctx, A, &o, perm);
+        return order_quotient(ctx, A, &o, 0, perm);
     case QC_ORDER_DISSECTION:
-        return order_dissection(ctx, A, &o, perm);
+        return order_dissection(ctx, A, &o, 0, perm);
     default:
         return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "unknown ordering %d", (int)o.ordering);
     }

@@ -84,15 +84,19 @@ static test_matrix torus(int32_t k, bool edges) {
     return M;
 }
 
-static double flops_of(qc_ctx *ctx, const test_matrix *M, int32_t ordering, int64_t *nnz) {
+static double flops_with(qc_ctx *ctx, const test_matrix *M, qc_analyze_options options,
+                         int64_t *nnz) {
     const qc_hermitian A = hermitian(M);
-    const qc_analyze_options options = with(ordering);
     qc_symbolic *S = NULL;
     assert_int_equal(qc_analyze(ctx, &A, &options, &S), QC_OK);
     const double flops = S->flops;
     *nnz = S->nnz_l;
     qc_symbolic_free(S);
     return flops;
+}
+
+static double flops_of(qc_ctx *ctx, const test_matrix *M, int32_t ordering, int64_t *nnz) {
+    return flops_with(ctx, M, with(ordering), nnz);
 }
 
 static void dissection_needs_fewer_operations_on_meshes(void **state) {
@@ -107,6 +111,26 @@ static void dissection_needs_fewer_operations_on_meshes(void **state) {
         assert_true((double)nnz[1] < 1.1 * (double)nnz[0]);
         free_matrix(&M);
     }
+    qc_ctx_free(ctx);
+}
+
+/* Pieces of at most 1000 of 30 000 rows are left to AMD: nearly as good as the whole dissection. */
+static void dissection_may_stop_at_pieces(void **state) {
+    (void)state;
+    qc_ctx *ctx = new_ctx(2);
+    test_matrix M = torus(100, false);
+    int64_t nnz[2];
+    int32_t *perm = malloc((size_t)M.n * sizeof *perm);
+    assert_int_equal(qc__order_dissection(ctx, pattern_of(&M), NULL, 1000, perm), QC_OK);
+    qc_analyze_options given = with(QC_ORDER_GIVEN);
+    given.permutation = perm;
+    const double whole = flops_of(ctx, &M, QC_ORDER_DISSECTION, &nnz[0]),
+                 pieces = flops_with(ctx, &M, given, &nnz[1]);
+    assert_true(pieces != whole);
+    assert_true(pieces < 1.4 * whole);
+    assert_true((double)nnz[1] < 1.2 * (double)nnz[0]);
+    free(perm);
+    free_matrix(&M);
     qc_ctx_free(ctx);
 }
 
@@ -360,6 +384,7 @@ int main(void) {
         cmocka_unit_test(every_pattern_gets_a_permutation),
         cmocka_unit_test(cover_partitions_the_edges),
         cmocka_unit_test(dissection_needs_fewer_operations_on_meshes),
+        cmocka_unit_test(dissection_may_stop_at_pieces),
         cmocka_unit_test(dissection_gives_way_without_separators),
         cmocka_unit_test(same_order_for_any_number_of_threads),
         cmocka_unit_test(cancel_at_every_report),
