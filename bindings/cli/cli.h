@@ -122,6 +122,8 @@ void cli_session_quiet(cli_session *session);
 /* The exit status for a failed call: interruption and time limit first, then as cli_context_error.
  */
 int cli_session_error(cli_session *session, const char *prefix, int fallback);
+/* The same for a run on the input: a file which cannot be opened is unusable input as well. */
+int cli_run_error(cli_session *session, const char *input);
 /* Ctrl-C and SIGTERM set what cli_interrupted tells; a second one ends the program. */
 void cli_catch_interrupts(void);
 bool cli_interrupted(void);

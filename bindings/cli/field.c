@@ -56,7 +56,7 @@ static int work(run *r, const settings *s) {
     qc_remesh_options options = QC_REMESH_OPTIONS_INIT;
     options.strict = 1;
     if (qc_remesh(r->session.ctx, r->pipeline, r->input, &options, &r->result) != QC_OK)
-        return cli_session_error(&r->session, s->input, EXIT_FAILED);
+        return cli_run_error(&r->session, s->input);
     cli_session_quiet(&r->session);
     if (cli_interrupted()) return cli_error(EXIT_INTERRUPTED, "interrupted");
     if (qc_face_field_write(r->session.ctx, r->result.field, s->output) != QC_OK)

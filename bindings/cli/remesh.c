@@ -197,7 +197,7 @@ static int check_options(run *r, const settings *s) {
 static int compute(run *r, const settings *s) {
     const qc_remesh_options options = remesh_options(s);
     if (qc_remesh(r->session.ctx, r->pipeline, r->input, &options, &r->result) != QC_OK)
-        return cli_session_error(&r->session, s->input, EXIT_FAILED);
+        return cli_run_error(&r->session, s->input);
     for (int32_t i = 0; i < r->result.n_warnings; i++)
         cli_session_warn(&r->session, "%s", r->result.warning[i]);
     return EXIT_DONE;
@@ -240,7 +240,7 @@ static int write_figures(run *r, const settings *s) {
     char *text = NULL;
     if (!cli_stats(&r->session, r->result.report, r->pipeline, s->input,
                    s->pipeline ? "pipeline" : modes[mode_of(s)], &r->stats, &text))
-        return cli_session_error(&r->session, s->input, EXIT_FAILED);
+        return cli_run_error(&r->session, s->input);
     int status = s->stats ? cli_write_text(s->stats, text) : EXIT_DONE;
     if (status == EXIT_DONE && s->report) status = write_report(r, s, text);
     qc_text_free(text);

@@ -159,3 +159,9 @@ int cli_session_error(cli_session *session, const char *prefix, int fallback) {
                          qc_ctx_error(session->ctx)->stage, session->time_limit);
     return cli_context_error(session->ctx, prefix, fallback);
 }
+
+/* A run writes nothing: a file which it cannot open is one that a parameter names. */
+int cli_run_error(cli_session *session, const char *input) {
+    const bool file = qc_ctx_error(session->ctx)->status == QC_ERR_IO;
+    return cli_session_error(session, input, file ? EXIT_INPUT : EXIT_FAILED);
+}

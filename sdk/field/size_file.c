@@ -24,11 +24,13 @@ typedef struct table {
 
 /* --- the text --------------------------------------------------------------------------------- */
 
+/* Names the word at the start of the text. */
 static qc_status not_positive(qc_ctx *ctx, const char *path, int64_t line, const char *text) {
+    const int n = (int)strcspn(text, " \t\r\n,#");
     return qc__fail(ctx, QC_ERR_INPUT, line,
-                    "%s:%lld: '%.16s' is not a positive number; a length for each vertex or face "
+                    "%s:%lld: '%.*s' is not a positive number; a length for each vertex or face "
                     "is needed",
-                    path, (long long)line, text);
+                    path, (long long)line, n < 40 ? n : 40, text);
 }
 
 /* All numbers; # begins a comment. */

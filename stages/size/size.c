@@ -3,6 +3,9 @@
 #include <qc/stages.h>
 
 #include <math.h>
+#include <stdio.h>
+
+#include "sdk/base/internal.h"
 
 typedef struct params {
     double quads, edge_length, edge_length_rel;
@@ -14,6 +17,34 @@ typedef struct params {
 #define PI 3.14159265358979323846
 
 #define DEFAULT_QUADS 10000.0
+/* More than any later stage can number. */
+#define MOST_QUADS 268435456.0
+
+static qc_status count_quads(const qc_run *run, const qc_sizing *sizing, double *n) {
+    const qc_mesh *mesh = sizing->mesh;
+    double *area = QC__NEW(run->ctx, double, mesh->n_faces);
+    qc_status status =
+        area ? qc_mesh_geometry(run->ctx, mesh, NULL, area, NULL, NULL, NULL, NULL) : QC_ERR_NOMEM;
+    *n = 0;
+    for (int32_t t = 0; !status && t < mesh->n_faces; t++) {
+        const double h = sizing->length ? sizing->length[t] : sizing->edge_length;
+        *n += area[t] / h / h;
+    }
+    qc__free(area);
+    return status;
+}
+
+static qc_status check_number(const qc_run *run, const qc_sizing *sizing) {
+    char text[160];
+    double n;
+    const qc_status status = count_quads(run, sizing, &n);
+    if (status || n <= MOST_QUADS) return status;
+    snprintf(text, sizeof text,
+             "%g quads of edge length %g would be needed, more than the %.0f which are possible; "
+             "ask for longer edges or fewer quads",
+             n, sizing->edge_length, MOST_QUADS);
+    return (run->fail)(run, QC_ERR_ARGUMENT, -1, text);
+}
 
 /* Precedence: edge_length, edge_length_rel, quads, the default number. */
 static qc_status size(const qc_run *run, const void *p) {
@@ -42,7 +73,11 @@ static qc_status size(const qc_run *run, const void *p) {
     } else {
         status = qc_sizing_create(run->ctx, mesh, length, quads, NULL, &out);
     }
-    return status ? status : run->output(run, "sizing", out);
+    if (status) return status;
+    status = check_number(run, out);
+    if (!status) return run->output(run, "sizing", out);
+    qc_object_release(out);
+    return status;
 }
 
 static const qc_port inputs[] = {

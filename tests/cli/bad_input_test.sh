@@ -73,6 +73,13 @@ error_says missing.rawfield
 echo '4 3' >short.rawfield
 run 3 remesh sphere.obj -o result --field short.rawfield
 error_says short.rawfield
+for parameter in features.strokes size.file; do
+    run 3 remesh sphere.obj -o result --set $parameter=missing.file
+    error_says missing.file
+done
+printf '1\nnan 2\n' >lengths.txt
+run 3 remesh sphere.obj -o result --set size.file=lengths.txt
+error_says 'lengths.txt:2' "'nan' is not a positive number"
 run 1 check sphere.obj
 error_says 'not a manifold of quads'
 [ -e result ] && fail 'an output was left'
