@@ -20,6 +20,16 @@ typedef struct qc__coarse {
     int32_t *origin;   /* vertex of the mesh at its start                                         */
 } qc__coarse;
 
+/* Flips of a complex, one after the other: qc__coarse_flip. */
+typedef struct qc__flips {
+    int32_t *halfedge;
+    int64_t n, capacity;
+} qc__flips;
+
+/* Makes the flips. The triangle, place and turn of n markers (as in qc__coarse_map) follow. */
+qc_status qc__coarse_flip(qc_ctx *ctx, qc__coarse *coarse, const qc__flips *flips, int32_t n,
+                          int32_t *triangle, qc__point *place, int8_t *turn);
+
 /* Integer vectors x (3 n_triangles, parameter units) near scale 2^-bits vector: opposite halfedges
  * are negatives up to the rotation, those of a triangle add up to zero and span a positive area,
  * those of features run along their axis. quads > 0: then the scale is changed until they span
@@ -27,6 +37,6 @@ typedef struct qc__coarse {
  * least number found. *made is the number they span. Errors: NOMEM, CANCELLED, FAILED (the given
  * vectors do not span positive areas; no scale up to 2^20 times as fine works). */
 qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, double quads,
-                              qc__point *x, double *made);
+                              qc__point *x, double *made, qc__flips *flips);
 
 #endif

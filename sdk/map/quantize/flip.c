@@ -10,6 +10,7 @@ static void turn_triangle(qc__triangulation *T, int32_t t, int q) {
     for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
         const int32_t g = T->twin[h];
         T->vector[h] = qc__turn_point(T->vector[h], q);
+        if (T->image) T->image[h] = qc__turn_point(T->image[h], q);
         if (T->axis[h] >= 0) T->axis[h] = (int8_t)((T->axis[h] + q) & 3);
         if (g < 0 || g / 3 == t) continue;
         T->rotation[h] = (int8_t)((T->rotation[h] - q) & 3);
@@ -47,7 +48,7 @@ static void put_marker(qc__triangulation *T, int32_t f, int32_t h) {
 }
 
 typedef struct half {
-    qc__point vector;
+    qc__point vector, image;
     int32_t twin, origin;
     int8_t rotation, axis;
 } half;
@@ -56,13 +57,16 @@ typedef struct half {
 static void move_halfedges(qc__triangulation *T, int n, const int32_t *from, const int32_t *to) {
     half saved[2];
     for (int i = 0; i < n; i++)
-        saved[i] = (half){T->vector[from[i]], T->twin[from[i]], T->origin[from[i]],
-                          T->rotation[from[i]], T->axis[from[i]]};
+        saved[i] =
+            (half){T->vector[from[i]], T->image ? T->image[from[i]] : (qc__point){0, 0},
+                   T->twin[from[i]],   T->origin[from[i]],
+                   T->rotation[from[i]], T->axis[from[i]]};
     for (int i = 0; i < n; i++) {
         int32_t twin = saved[i].twin;
         for (int j = 0; j < n; j++)
             if (saved[i].twin == from[j]) twin = to[j];
         T->vector[to[i]] = saved[i].vector;
+        if (T->image) T->image[to[i]] = saved[i].image;
         T->twin[to[i]] = twin;
         T->origin[to[i]] = saved[i].origin;
         T->rotation[to[i]] = saved[i].rotation;
@@ -77,13 +81,23 @@ static void renew_spokes(qc__triangulation *T, int32_t t) {
 
 /* --- flips ------------------------------------------------------------------------------------ */
 
+qc__flap qc__flap_at(const qc__triangulation *T, const qc__point *vector, int32_t h) {
+    const int32_t g = T->twin[h];
+    return (qc__flap){vector[h], qc__turn_point(vector[qc_prev(h)], 2),
+                      qc__turn_point(vector[qc_next(g)], 4 - T->rotation[h])};
+}
+
 bool qc__can_flip(const qc__triangulation *T, int32_t h, bool flat) {
     const int32_t g = T->twin[h];
     if (g < 0 || T->axis[h] >= 0 || g / 3 == h / 3) return false;
-    const qc__point q = T->vector[h], r = qc__turn_point(T->vector[qc_prev(h)], 2);
-    const qc__point w = qc__turn_point(T->vector[qc_next(g)], 4 - T->rotation[h]);
-    return qc__area_sign(qc__minus(q, w), qc__minus(r, q)) > 0 &&
-           qc__area_sign(w, r) >= (flat ? 0 : 1);
+    const qc__flap f = qc__flap_at(T, T->vector, h);
+    return qc__area_sign(qc__minus(f.q, f.w), qc__minus(f.r, f.q)) > 0 &&
+           qc__area_sign(f.w, f.r) >= (flat ? 0 : 1);
+}
+
+static void cross_flap(qc__point *vector, int32_t a, int32_t b, const qc__flap *f) {
+    vector[a] = qc__minus(f->r, f->w);
+    vector[b] = qc__minus(f->w, f->r);
 }
 
 /* h runs from p to q, with r on the left and w on the right: the triangles p q r and q p w become
@@ -92,15 +106,16 @@ void qc__flip(qc__triangulation *T, int32_t h) {
     const int32_t g = T->twin[h];
     share_chart(T, h);
     const int32_t from[2] = {qc_next(h), qc_next(g)}, to[2] = {g, h};
-    const qc__point w = T->vector[qc_next(g)], r = qc__turn_point(T->vector[qc_prev(h)], 2);
+    const qc__flap f = qc__flap_at(T, T->vector, h);
+    const qc__flap image = T->image ? qc__flap_at(T, T->image, h) : f;
     const int32_t at_w = T->origin[qc_prev(g)], at_r = T->origin[qc_prev(h)];
     int32_t list = -1;
     take_markers(T, h, (qc__point){0, 0}, &list);
     take_markers(T, qc_next(g), (qc__point){0, 0}, &list);
     move_halfedges(T, 2, from, to);
     const int32_t a = qc_next(h), b = qc_next(g); /* w to r, and back */
-    T->vector[a] = qc__minus(r, w);
-    T->vector[b] = qc__minus(w, r);
+    cross_flap(T->vector, a, b, &f);
+    if (T->image) cross_flap(T->image, a, b, &image);
     T->twin[a] = b;
     T->twin[b] = a;
     T->origin[a] = at_w;
@@ -109,11 +124,11 @@ void qc__flip(qc__triangulation *T, int32_t h) {
     T->axis[a] = T->axis[b] = -1;
     renew_spokes(T, h / 3);
     renew_spokes(T, g / 3);
-    for (int32_t f = list, next; f >= 0; f = next) {
-        next = T->next_marker[f];
-        T->place[f] = qc__minus(T->place[f], w);
-        const bool left = qc__area_sign(T->vector[a], T->place[f]) >= 0;
-        put_marker(T, f, left ? a : qc_prev(g));
+    for (int32_t m = list, next; m >= 0; m = next) {
+        next = T->next_marker[m];
+        T->place[m] = qc__minus(T->place[m], f.w);
+        const bool left = qc__area_sign(T->vector[a], T->place[m]) >= 0;
+        put_marker(T, m, left ? a : qc_prev(g));
     }
 }
 

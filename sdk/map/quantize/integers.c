@@ -12,109 +12,10 @@
 enum {
     MOST_REFINEMENTS = 40, /* by sqrt(2): 2^20 */
     DENSITY_ROUNDS = 8,
-    SCANS = 10,
-    PATIENCE = 2 /* sweeps */
+    SCANS = 10
 };
-static const double stuck = 0.9;                        /* of the violation, left by a sweep */
 static const double good_miss = 0.02, fair_miss = 0.05; /* of the number of quads */
 static const double scan_step = 0.02;                   /* of the scale */
-/* Of a path which mends a violation; of others it is what they gain. */
-static const double mending_limit = 50;
-
-/* --- one move --------------------------------------------------------------------------------- */
-
-static bool is_violated(const qc__integers *q, int32_t h) {
-    const int32_t g = q->coarse->twin[h];
-    if (q->violation == 0) return false;
-    if (qc__integers_area(q, h / 3) <= 0 || (g >= 0 && qc__integers_area(q, g / 3) <= 0))
-        return true;
-    const int32_t a = q->coarse->origin[h], b = q->coarse->origin[qc_next(h)];
-    return (q->expected[a] >= 0 && q->turns[a] != q->expected[a]) ||
-           (q->expected[b] >= 0 && q->turns[b] != q->expected[b]);
-}
-
-/* The cheapest closed path which crosses h with a unit i^k, or path between boundaries, becomes
- * q->path. *found: whether there is one below the limit. */
-static qc_status find_path(qc__integers *q, int32_t h, int32_t k, double limit, bool *found) {
-    const qc__coarse *c = q->coarse;
-    const int32_t g = c->twin[h];
-    const qc__goal around = {h, k, NULL, true, limit}, out = {-1, 0, NULL, true, limit};
-    qc__found loop = {INFINITY, -1, -1}, there = loop, back = loop, none;
-    bool room = true;
-    q->n_path = 0;
-    if (g >= 0) {
-        qc__integers_search(q, &g, 1, k + c->rotation[h], &around, &loop,
-                            q->has_boundary ? &there : NULL);
-        if (loop.length <= there.length)
-            room = isinf(loop.length) || qc__integers_append(q, &loop);
-        else
-            room = qc__integers_append(q, &there);
-    }
-    if (q->has_boundary && room && (g < 0 || there.length < loop.length)) {
-        qc__integers_search(q, &h, 1, k + 2, &out, &none, &back);
-        const double length = back.length + (g < 0 ? 0 : there.length);
-        if (length < limit && length < loop.length) {
-            room = qc__integers_append(q, &back);
-            loop.length = length;
-        } else { /* the way there alone leads nowhere */
-            q->n_path = 0;
-            loop.length = INFINITY;
-        }
-    }
-    *found = loop.length < limit;
-    if (*found && room) room = qc__integers_cross(q, h, k);
-    return room ? QC_OK : QC_ERR_NOMEM;
-}
-
-/* Applies the path as often as it helps. */
-static bool improve(qc__integers *q) {
-    bool improved = false;
-    for (int64_t times = 1;; times *= 2) {
-        const int64_t violation = q->violation;
-        const double energy = q->energy;
-        qc__integers_apply(q, times);
-        if (q->violation < violation ||
-            (q->violation == violation && q->energy < energy - 1e-9 * (1 + energy))) {
-            improved = true;
-            continue;
-        }
-        qc__integers_apply(q, -times);
-        return improved;
-    }
-}
-
-static qc_status try_edge(qc__integers *q, int32_t h, bool *improved) {
-    for (int32_t k = 0; k < 4; k++) {
-        if (!qc__may_cross(q->coarse, h, k)) continue;
-        const double gain = -qc__integers_change(q, h, k);
-        const double limit = is_violated(q, h) ? mending_limit : gain;
-        if (!(limit > 0)) continue;
-        bool found;
-        const qc_status status = find_path(q, h, k, limit, &found);
-        if (status != QC_OK) return status;
-        if (found && improve(q)) *improved = true;
-    }
-    return QC_OK;
-}
-
-/* Moves until none helps, or until a sweep over the edges mends next to nothing of what is
- * violated: then a finer scale is the better way. */
-static qc_status descend(qc__integers *q) {
-    const qc__coarse *c = q->coarse;
-    bool improved = true;
-    for (int32_t sweep = 0; improved; sweep++) {
-        const int64_t before = q->violation;
-        improved = false;
-        for (int32_t h = 0; h < 3 * c->n_triangles; h++) {
-            if (c->twin[h] >= 0 && c->twin[h] < h) continue;
-            if (h % 64 == 0 && !qc__progress(q->ctx, 0)) return QC_ERR_CANCELLED;
-            const qc_status status = try_edge(q, h, &improved);
-            if (status != QC_OK) return status;
-        }
-        if (sweep >= PATIENCE && (double)q->violation > stuck * (double)before) break;
-    }
-    return QC_OK;
-}
 
 /* --- scales ----------------------------------------------------------------------------------- */
 
@@ -131,19 +32,19 @@ static qc_status find_feasible(qc__integers *q, double scale, int32_t *times) {
         if (status != QC_OK) return status;
         if (!closed) continue;
         qc__integers_measure(q);
-        status = descend(q);
+        status = qc__integers_descend(q);
         if (status != QC_OK || q->violation == 0) return status;
     }
     return qc__fail(q->ctx, QC_ERR_FAILED, -1,
                     "no integers keep the %d triangles between singularities and features "
                     "positive",
-                    (int)q->coarse->n_triangles);
+                    (int)q->T.n_triangles);
 }
 
 /* Unit squares which the vectors span: quads. */
 static double count_quads(const qc__integers *q) {
     double area = 0;
-    for (int32_t t = 0; t < q->coarse->n_triangles; t++)
+    for (int32_t t = 0; t < q->T.n_triangles; t++)
         area += 0.5 * (double)qc__integers_area(q, t);
     return area;
 }
@@ -151,7 +52,29 @@ static double count_quads(const qc__integers *q) {
 static qc_status move_towards(qc__integers *q, double scale) {
     qc__integers_aim(q, scale);
     qc__integers_measure(q);
-    return descend(q);
+    return qc__integers_descend(q);
+}
+
+/* --- the best so far -------------------------------------------------------------------------- */
+
+static void copy(const qc__triangulation *from, qc__triangulation *to) {
+    const size_t n = 3 * (size_t)from->n_triangles;
+    memcpy(to->vector, from->vector, sizeof *to->vector * n);
+    memcpy(to->image, from->image, sizeof *to->image * n);
+    memcpy(to->twin, from->twin, sizeof *to->twin * n);
+    memcpy(to->origin, from->origin, sizeof *to->origin * n);
+    memcpy(to->rotation, from->rotation, n);
+    memcpy(to->axis, from->axis, n);
+}
+
+static void save(qc__integers *q) {
+    copy(&q->T, &q->best);
+    q->best_flips = q->flips.n;
+}
+
+static void restore(qc__integers *q) {
+    copy(&q->best, &q->T);
+    q->flips.n = q->best_flips;
 }
 
 /* How far the number of quads is off. */
@@ -163,7 +86,7 @@ static double miss(const qc__integers *q, double quads) {
 static void keep_best(qc__integers *q, double quads, double *best) {
     const double here = miss(q, quads);
     if (q->violation > 0 || here >= *best) return;
-    memcpy(q->best, q->x, sizeof *q->x * 3 * (size_t)q->coarse->n_triangles);
+    save(q);
     *best = here;
 }
 
@@ -177,7 +100,7 @@ static qc_status scan_scales(qc__integers *q, double scale, double quads, double
         if (status != QC_OK) return status;
         if (!closed) continue;
         qc__integers_measure(q);
-        status = descend(q);
+        status = qc__integers_descend(q);
         if (status != QC_OK) return status;
         keep_best(q, quads, best);
     }
@@ -195,7 +118,7 @@ static qc_status meet_quads(qc__integers *q, double scale, double quads, bool sc
         keep_best(q, quads, &best);
     }
     const qc_status status = scan ? scan_scales(q, scale, quads, &best) : QC_OK;
-    memcpy(q->x, q->best, sizeof *q->x * 3 * (size_t)q->coarse->n_triangles);
+    restore(q);
     return status;
 }
 
@@ -210,14 +133,38 @@ static qc_status search(qc__integers *q, double scale, double quads) {
     return status == QC_OK && quads > 0 ? meet_quads(q, scale, quads, at_once) : status;
 }
 
-static qc_status allocate(qc__integers *q) {
-    const qc__coarse *c = q->coarse;
+static void free_triangulation(qc__triangulation *T) {
+    void *const blocks[] = {T->vector, T->image, T->twin,  T->origin,
+                            T->rotation, T->axis,  T->spoke, T->first_marker};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+}
+
+/* Room for the complex and its integer vectors. */
+static bool allocate_triangulation(qc_ctx *ctx, int32_t n_triangles, int32_t n_origins,
+                                   qc__triangulation *T) {
+    const int64_t n = 3 * (int64_t)n_triangles;
+    T->n_triangles = n_triangles;
+    T->vector = QC__NEW(ctx, qc__point, n);
+    T->image = QC__ZERO(ctx, qc__point, n);
+    T->twin = QC__NEW(ctx, int32_t, n);
+    T->origin = QC__NEW(ctx, int32_t, n);
+    T->rotation = QC__NEW(ctx, int8_t, n);
+    T->axis = QC__NEW(ctx, int8_t, n);
+    T->spoke = QC__ZERO(ctx, int32_t, n_origins);
+    T->first_marker = QC__NEW(ctx, int32_t, n_triangles);
+    if (!T->vector || !T->image || !T->twin || !T->origin || !T->rotation || !T->axis ||
+        !T->spoke || !T->first_marker)
+        return false;
+    for (int32_t t = 0; t < n_triangles; t++) T->first_marker[t] = -1;
+    return true;
+}
+
+static qc_status allocate(qc__integers *q, const qc__coarse *c) {
     const int32_t n = 3 * c->n_triangles;
     for (int32_t h = 0; h < n; h++) {
         if (c->origin[h] >= q->n_origins) q->n_origins = c->origin[h] + 1;
         q->has_boundary |= c->twin[h] < 0;
     }
-    q->best = QC__NEW(q->ctx, qc__point, n);
     q->wanted = QC__NEW(q->ctx, double, 2 * (int64_t)n);
     q->weight = QC__NEW(q->ctx, double, n);
     q->turns = QC__ZERO(q->ctx, int32_t, q->n_origins);
@@ -225,24 +172,33 @@ static qc_status allocate(qc__integers *q) {
     q->distance = QC__NEW(q->ctx, double, 4 * (int64_t)n);
     q->parent = QC__NEW(q->ctx, int32_t, 4 * (int64_t)n);
     q->touched = QC__NEW(q->ctx, int32_t, 4 * (int64_t)n);
-    if (!q->best || !q->wanted || !q->weight || !q->turns || !q->expected || !q->distance ||
-        !q->parent || !q->touched)
+    if (!allocate_triangulation(q->ctx, c->n_triangles, q->n_origins, &q->T) ||
+        !allocate_triangulation(q->ctx, c->n_triangles, q->n_origins, &q->best) || !q->wanted ||
+        !q->weight || !q->turns || !q->expected || !q->distance || !q->parent || !q->touched)
         return QC_ERR_NOMEM;
+    q->x = q->T.image;
     for (int32_t s = 0; s < 4 * n; s++) q->distance[s] = INFINITY;
+    const qc__triangulation given = {.n_triangles = c->n_triangles, .vector = c->vector, .image = q->x, .twin = c->twin, .origin = c->origin, .rotation = c->rotation, .axis = c->axis};
+    copy(&given, &q->T);
     return qc__heap_create(q->ctx, 4 * n, q->distance, &q->heap);
 }
 
 qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, double quads,
-                              qc__point *x, double *made) {
-    qc__integers q = {.ctx = ctx, .coarse = coarse};
-    q.x = QC__NEW(ctx, qc__point, 3 * (int64_t)coarse->n_triangles);
-    qc_status status = q.x ? allocate(&q) : QC_ERR_NOMEM;
+                              qc__point *x, double *made, qc__flips *flips) {
+    qc__integers q = {.ctx = ctx, .bits = coarse->bits};
+    qc_status status = allocate(&q, coarse);
     if (status == QC_OK) status = search(&q, scale, quads);
     for (int32_t h = 0; h < 3 * coarse->n_triangles && status == QC_OK; h++) x[h] = q.x[h];
-    if (status == QC_OK) *made = count_quads(&q);
+    if (status == QC_OK) {
+        *made = count_quads(&q);
+        *flips = q.flips;
+        q.flips.halfedge = NULL;
+    }
     qc__heap_free(&q.heap);
-    void *const blocks[] = {q.x,        q.best,     q.wanted, q.weight,  q.turns,
-                            q.expected, q.distance, q.parent, q.touched, q.path};
+    free_triangulation(&q.T);
+    free_triangulation(&q.best);
+    void *const blocks[] = {q.wanted,   q.weight, q.turns,   q.expected,
+                            q.distance, q.parent, q.touched, q.path,     q.flips.halfedge};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

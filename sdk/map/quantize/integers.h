@@ -8,7 +8,7 @@
 #ifndef QC_MAP_QUANTIZE_INTEGERS_H
 #define QC_MAP_QUANTIZE_INTEGERS_H
 
-#include "sdk/map/quantize/coarse.h"
+#include "sdk/map/quantize/triangulation.h"
 #include "sdk/mesh/internal.h"
 
 typedef struct qc__crossing {
@@ -17,10 +17,15 @@ typedef struct qc__crossing {
 
 typedef struct qc__integers {
     qc_ctx *ctx;
-    const qc__coarse *coarse;
+    qc__triangulation T; /* a copy of the complex; T.image = x is flipped along, no markers */
+    qc__flips flips;     /* from the complex to T */
+    qc__triangulation best;
+    int64_t best_flips;
+    int32_t bits;
     bool has_boundary;
-    qc__point *x, *best; /* 3 n_triangles */
-    double *wanted;      /* 6 n_triangles: the real vectors at the present scale */
+    qc__point *x;   /* 3 n_triangles */
+    double scale;   /* the present one, of the vectors of T */
+    double *wanted; /* 6 n_triangles: the real vectors at the present scale */
     double *weight;      /* 3 n_triangles: of the edges in the energy */
     /* winding: axis directions in the sectors about a vertex of the mesh */
     int32_t n_origins;
@@ -39,7 +44,7 @@ typedef struct qc__integers {
 } qc__integers;
 
 /* A unit may cross a feature along its axis only. */
-static inline bool qc__may_cross(const qc__coarse *c, int32_t h, int32_t k) {
+static inline bool qc__may_cross(const qc__triangulation *c, int32_t h, int32_t k) {
     return c->axis[h] < 0 || ((k - c->axis[h]) & 1) == 0;
 }
 
@@ -57,8 +62,23 @@ double qc__integers_change(const qc__integers *q, int32_t h, int32_t k);
 /* Twice the area of the triangle of a and b when a gains i^k and b, another halfedge, loses it. */
 int64_t qc__integers_area_after(const qc__integers *q, int32_t a, int32_t b, int32_t k);
 int64_t qc__integers_area(const qc__integers *q, int32_t t);
+/* Flips an inner edge; violation stays up to date, energy does not. */
+void qc__integers_flip(qc__integers *q, int32_t h);
 /* Makes the crossings of the path `times` times; negative: back. */
 void qc__integers_apply(qc__integers *q, int64_t times);
+
+/* --- flips (integers_flips.c) */
+
+/* Flips edges where fewer areas are missing then, or, those being positive, towards the Delaunay
+ * triangulation of the integer vectors; the real triangles stay positive. Measures anew.
+ * *flipped: whether any was. */
+qc_status qc__integers_flip_all(qc__integers *q, bool *flipped);
+
+/* --- moves (integers.c) */
+
+/* Moves and flips until none helps, or until they mend next to nothing of what is violated: then a
+ * finer scale is the better way. */
+qc_status qc__integers_descend(qc__integers *q);
 
 /* --- start (integers_start.c) */
 

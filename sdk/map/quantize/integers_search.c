@@ -8,7 +8,7 @@ static const double least_length = 0.01;
 
 /* Length of the crossing of h by a unit i^k; infinite where it may not. */
 static double length(const qc__integers *q, int32_t h, int32_t k) {
-    if (!qc__may_cross(q->coarse, h, k)) return INFINITY;
+    if (!qc__may_cross(&q->T, h, k)) return INFINITY;
     return fmax(qc__integers_change(q, h, k), least_length);
 }
 
@@ -44,7 +44,7 @@ static bool is_inside_goal(const qc__integers *q, const qc__goal *goal, int32_t 
 
 /* The steps on from a state. */
 static void expand(qc__integers *q, int32_t state, const qc__goal *goal, qc__found *outside) {
-    const qc__coarse *c = q->coarse;
+    const qc__triangulation *c = &q->T;
     const int32_t h = state / 4, k = state % 4;
     const int32_t out[2] = {qc_next(h), qc_prev(h)};
     for (int32_t i = 0; i < 2; i++) {
@@ -84,7 +84,7 @@ bool qc__integers_cross(qc__integers *q, int32_t h, int32_t k) {
 }
 
 bool qc__integers_append(qc__integers *q, const qc__found *found) {
-    const qc__coarse *c = q->coarse;
+    const qc__triangulation *c = &q->T;
     if (found->outlet >= 0 && !qc__integers_cross(q, found->outlet, found->state)) return false;
     for (int32_t s = found->state; q->parent[s] >= 0; s = q->parent[s])
         if (!qc__integers_cross(q, c->twin[s / 4], q->parent[s])) return false;

@@ -7,14 +7,14 @@
 /* Features get at least one unit along their axis. */
 static qc__point rounded(const qc__integers *q, int32_t h) {
     const double *w = q->wanted + 2 * (int64_t)h;
-    const int32_t axis = q->coarse->axis[h];
+    const int32_t axis = q->T.axis[h];
     if (axis < 0) return (qc__point){(int64_t)rint(w[0]), (int64_t)rint(w[1])};
     const double along = axis & 1 ? fabs(w[1]) : fabs(w[0]);
     return qc__turn_point((qc__point){(int64_t)fmax(1, rint(along)), 0}, axis);
 }
 
 static void round_all(qc__integers *q) {
-    const qc__coarse *c = q->coarse;
+    const qc__triangulation *c = &q->T;
     for (int32_t h = 0; h < 3 * c->n_triangles; h++) {
         const int32_t g = c->twin[h];
         if (g >= 0 && g < h) continue;
@@ -43,10 +43,10 @@ static qc_status settle_unit(qc__integers *q, qc__point *defect, int32_t t, bool
     q->n_path = 0;
     if (!qc__integers_append(q, found)) return QC_ERR_NOMEM;
     for (int32_t i = 0; i < q->n_path; i++) {
-        const int32_t h = q->path[i].halfedge, g = q->coarse->twin[h];
+        const int32_t h = q->path[i].halfedge, g = q->T.twin[h];
         const qc__point d = qc__turn_point((qc__point){1, 0}, q->path[i].k);
         q->x[h] = qc__minus(q->x[h], d);
-        if (g >= 0) q->x[g] = qc__plus(q->x[g], qc__turn_point(d, q->coarse->rotation[h]));
+        if (g >= 0) q->x[g] = qc__plus(q->x[g], qc__turn_point(d, q->T.rotation[h]));
     }
     if (!leaves) {
         qc__point *end = &defect[found->state / 12];
@@ -56,7 +56,7 @@ static qc_status settle_unit(qc__integers *q, qc__point *defect, int32_t t, bool
 }
 
 qc_status qc__integers_start(qc__integers *q, bool *closed) {
-    const int32_t n = q->coarse->n_triangles;
+    const int32_t n = q->T.n_triangles;
     qc__point *defect = QC__NEW(q->ctx, qc__point, n);
     if (!defect) return QC_ERR_NOMEM;
     round_all(q);

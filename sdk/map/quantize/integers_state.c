@@ -23,12 +23,12 @@ static double cotangent(const qc__integers *q, int32_t h) {
     return -wanted_dot(q, n, p) / wanted_cross(q, n, p);
 }
 
-static int32_t canonical(const qc__coarse *c, int32_t h) {
+static int32_t canonical(const qc__triangulation *c, int32_t h) {
     return c->twin[h] >= 0 && c->twin[h] < h ? c->twin[h] : h;
 }
 
 /* Axis directions in the sector of x at the start of h. */
-static int32_t directions(const qc__coarse *c, const qc__point *x, int32_t h) {
+static int32_t directions(const qc__triangulation *c, const qc__point *x, int32_t h) {
     const int32_t p = qc_prev(h);
     const qc__point back = {-x[p].u, -x[p].v};
     int32_t n = 0;
@@ -38,7 +38,7 @@ static int32_t directions(const qc__coarse *c, const qc__point *x, int32_t h) {
 
 /* Where the boundary does not follow isolines its angles may change. */
 static void expect_windings(qc__integers *q) {
-    const qc__coarse *c = q->coarse;
+    const qc__triangulation *c = &q->T;
     for (int32_t v = 0; v < q->n_origins; v++) q->expected[v] = 0;
     for (int32_t h = 0; h < 3 * c->n_triangles; h++)
         q->expected[c->origin[h]] += directions(c, c->vector, h);
@@ -47,17 +47,19 @@ static void expect_windings(qc__integers *q) {
             q->expected[c->origin[h]] = q->expected[c->origin[qc_next(h)]] = -1;
 }
 
+static void weigh(qc__integers *q, int32_t h) {
+    const int32_t g = q->T.twin[h];
+    const double w = 0.5 * (cotangent(q, h) + (g >= 0 ? cotangent(q, g) : 0));
+    q->weight[h] = !(w > least_weight) ? least_weight : fmin(w, most_weight);
+}
+
 qc_status qc__integers_weigh(qc__integers *q) {
-    const qc__coarse *c = q->coarse;
+    const qc__triangulation *c = &q->T;
     for (int32_t h = 0; h < 3 * c->n_triangles; h += 3)
         if (!(wanted_cross(q, h, h + 1) > 0))
             return qc__fail(q->ctx, QC_ERR_FAILED, c->origin[h],
                             "the map before rounding folds over at vertex %d", (int)c->origin[h]);
-    for (int32_t h = 0; h < 3 * c->n_triangles; h++) {
-        const int32_t g = c->twin[h];
-        const double w = 0.5 * (cotangent(q, h) + (g >= 0 ? cotangent(q, g) : 0));
-        q->weight[h] = !(w > least_weight) ? least_weight : fmin(w, most_weight);
-    }
+    for (int32_t h = 0; h < 3 * c->n_triangles; h++) weigh(q, h);
     expect_windings(q);
     return QC_OK;
 }
@@ -101,15 +103,15 @@ static void count_triangle(qc__integers *q, int32_t t, int32_t sign) {
     const int64_t missing = missing_area(q, t);
     q->violation += sign * missing;
     for (int32_t h = 3 * t; h < 3 * t + 3 && missing == 0; h++) {
-        const int32_t v = q->coarse->origin[h];
+        const int32_t v = q->T.origin[h];
         q->violation -= wrong_winding(q, v);
-        q->turns[v] += sign * directions(q->coarse, q->x, h);
+        q->turns[v] += sign * directions(&q->T, q->x, h);
         q->violation += wrong_winding(q, v);
     }
 }
 
 void qc__integers_measure(qc__integers *q) {
-    const qc__coarse *c = q->coarse;
+    const qc__triangulation *c = &q->T;
     q->violation = 0;
     q->energy = 0;
     for (int32_t v = 0; v < q->n_origins; v++) q->turns[v] = 0;
@@ -119,16 +121,33 @@ void qc__integers_measure(qc__integers *q) {
         if (canonical(c, h) == h) q->energy += edge_energy(q, h);
 }
 
+static void aim_at(qc__integers *q, int32_t h) {
+    q->wanted[2 * (int64_t)h] = q->scale * (double)q->T.vector[h].u;
+    q->wanted[2 * (int64_t)h + 1] = q->scale * (double)q->T.vector[h].v;
+}
+
 void qc__integers_aim(qc__integers *q, double scale) {
-    const qc__coarse *c = q->coarse;
-    for (int32_t h = 0; h < 3 * c->n_triangles; h++) {
-        q->wanted[2 * (int64_t)h] = scale * ldexp((double)c->vector[h].u, -c->bits);
-        q->wanted[2 * (int64_t)h + 1] = scale * ldexp((double)c->vector[h].v, -c->bits);
+    q->scale = ldexp(scale, -q->bits);
+    for (int32_t h = 0; h < 3 * q->T.n_triangles; h++) aim_at(q, h);
+}
+
+void qc__integers_flip(qc__integers *q, int32_t h) {
+    const int32_t pair[2] = {h / 3, q->T.twin[h] / 3};
+    for (int i = 0; i < 2; i++) count_triangle(q, pair[i], -1);
+    qc__flip(&q->T, h);
+    for (int i = 0; i < 2; i++) {
+        count_triangle(q, pair[i], 1);
+        for (int32_t e = 3 * pair[i]; e < 3 * pair[i] + 3; e++) aim_at(q, e);
     }
+    for (int i = 0; i < 2; i++)
+        for (int32_t e = 3 * pair[i]; e < 3 * pair[i] + 3; e++) {
+            weigh(q, e);
+            if (q->T.twin[e] >= 0) weigh(q, q->T.twin[e]);
+        }
 }
 
 static void add(qc__integers *q, qc__crossing step, int64_t times) {
-    const qc__coarse *c = q->coarse;
+    const qc__triangulation *c = &q->T;
     const int32_t h = step.halfedge, g = c->twin[h];
     const qc__point d = qc__turn_point((qc__point){times, 0}, step.k);
     const int32_t t = h / 3, s = g < 0 ? t : g / 3;

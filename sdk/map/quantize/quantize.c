@@ -12,8 +12,14 @@ static qc_status find_integers(qc_ctx *ctx, const qc__exact_map *map, double sca
     *x = QC__NEW(ctx, qc__point, 3 * (int64_t)(*coarse)->coarse.n_triangles);
     if (!*x) return QC_ERR_NOMEM;
     outer = qc__range_begin(ctx, NULL, 0.4, 0.9);
-    status = qc__coarse_integers(ctx, &(*coarse)->coarse, scale, quads, *x, made);
+    qc__flips flips = {0};
+    status = qc__coarse_integers(ctx, &(*coarse)->coarse, scale, quads, *x, made, &flips);
     qc__range_end(ctx, outer);
+    qc__coarse_map *c = *coarse;
+    if (status == QC_OK)
+        status = qc__coarse_flip(ctx, &c->coarse, &flips, map->mesh->n_faces, c->triangle, c->place,
+                                 c->turn);
+    qc__free(flips.halfedge);
     return status;
 }
 

@@ -17,7 +17,7 @@ typedef struct qc__triangulation {
     const qc_mesh *mesh;
     int32_t n_triangles;
     /* 3 n_triangles each, as in qc__coarse */
-    qc__point *vector;
+    qc__point *vector, *image; /* image: other vectors, which are flipped along; NULL = none */
     int32_t *twin, *origin;
     int8_t *rotation, *axis;
     uint8_t *dead;  /* n_triangles: merged into another one                                       */
@@ -56,6 +56,12 @@ static inline int32_t qc__spoke_cw(const qc__triangulation *T, int32_t h) {
 /* The spoke from which qc__spoke_ccw visits all. */
 int32_t qc__first_spoke(const qc__triangulation *T, int32_t v);
 
+/* The two triangles at inner halfedge h, which runs from p to q, with r on the left and w on the
+ * right: places relative to p in the chart of h. */
+typedef struct qc__flap {
+    qc__point q, r, w;
+} qc__flap;
+qc__flap qc__flap_at(const qc__triangulation *T, const qc__point *vector, int32_t h);
 /* Whether the other diagonal of the two triangles at h may take its place: no feature, and both new
  * triangles are positive. flat: the one at the origin of h may be flat. */
 bool qc__can_flip(const qc__triangulation *T, int32_t h, bool flat);
