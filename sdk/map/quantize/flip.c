@@ -57,10 +57,9 @@ typedef struct half {
 static void move_halfedges(qc__triangulation *T, int n, const int32_t *from, const int32_t *to) {
     half saved[2];
     for (int i = 0; i < n; i++)
-        saved[i] =
-            (half){T->vector[from[i]], T->image ? T->image[from[i]] : (qc__point){0, 0},
-                   T->twin[from[i]],   T->origin[from[i]],
-                   T->rotation[from[i]], T->axis[from[i]]};
+        saved[i] = (half){T->vector[from[i]],   T->image ? T->image[from[i]] : (qc__point){0, 0},
+                          T->twin[from[i]],     T->origin[from[i]],
+                          T->rotation[from[i]], T->axis[from[i]]};
     for (int i = 0; i < n; i++) {
         int32_t twin = saved[i].twin;
         for (int j = 0; j < n; j++)

@@ -16,6 +16,10 @@ enum {
 };
 static const double good_miss = 0.02, fair_miss = 0.05; /* of the number of quads */
 static const double scan_step = 0.02;                   /* of the scale */
+static const double promising = 0.2; /* violation a triangle from which moves are tried */
+/* Paths may raise the energy by so many times what their first crossing gains: what they gain
+ * farther on tells. */
+static const double near_reach = 1, far_reach = 4;
 
 /* --- scales ----------------------------------------------------------------------------------- */
 
@@ -32,6 +36,7 @@ static qc_status find_feasible(qc__integers *q, double scale, int32_t *times) {
         if (status != QC_OK) return status;
         if (!closed) continue;
         qc__integers_measure(q);
+        if ((double)q->violation > promising * q->T.n_triangles) continue;
         status = qc__integers_descend(q);
         if (status != QC_OK || q->violation == 0) return status;
     }
@@ -44,8 +49,7 @@ static qc_status find_feasible(qc__integers *q, double scale, int32_t *times) {
 /* Unit squares which the vectors span: quads. */
 static double count_quads(const qc__integers *q) {
     double area = 0;
-    for (int32_t t = 0; t < q->T.n_triangles; t++)
-        area += 0.5 * (double)qc__integers_area(q, t);
+    for (int32_t t = 0; t < q->T.n_triangles; t++) area += 0.5 * (double)qc__integers_area(q, t);
     return area;
 }
 
@@ -111,6 +115,7 @@ static qc_status scan_scales(qc__integers *q, double scale, double quads, double
 static qc_status meet_quads(qc__integers *q, double scale, double quads, bool scan) {
     double best = INFINITY, at = scale;
     keep_best(q, quads, &best);
+    q->reach = far_reach;
     for (int32_t i = 0; i < DENSITY_ROUNDS && best > good_miss; i++) {
         at *= fmin(fmax(sqrt(quads / count_quads(q)), 0.5), 2);
         const qc_status status = move_towards(q, at);
@@ -134,7 +139,7 @@ static qc_status search(qc__integers *q, double scale, double quads) {
 }
 
 static void free_triangulation(qc__triangulation *T) {
-    void *const blocks[] = {T->vector, T->image, T->twin,  T->origin,
+    void *const blocks[] = {T->vector,   T->image, T->twin,  T->origin,
                             T->rotation, T->axis,  T->spoke, T->first_marker};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
 }
@@ -178,14 +183,20 @@ static qc_status allocate(qc__integers *q, const qc__coarse *c) {
         return QC_ERR_NOMEM;
     q->x = q->T.image;
     for (int32_t s = 0; s < 4 * n; s++) q->distance[s] = INFINITY;
-    const qc__triangulation given = {.n_triangles = c->n_triangles, .vector = c->vector, .image = q->x, .twin = c->twin, .origin = c->origin, .rotation = c->rotation, .axis = c->axis};
+    const qc__triangulation given = {.n_triangles = c->n_triangles,
+                                     .vector = c->vector,
+                                     .image = q->x,
+                                     .twin = c->twin,
+                                     .origin = c->origin,
+                                     .rotation = c->rotation,
+                                     .axis = c->axis};
     copy(&given, &q->T);
     return qc__heap_create(q->ctx, 4 * n, q->distance, &q->heap);
 }
 
 qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scale, double quads,
                               qc__point *x, double *made, qc__flips *flips) {
-    qc__integers q = {.ctx = ctx, .bits = coarse->bits};
+    qc__integers q = {.ctx = ctx, .bits = coarse->bits, .reach = near_reach};
     qc_status status = allocate(&q, coarse);
     if (status == QC_OK) status = search(&q, scale, quads);
     for (int32_t h = 0; h < 3 * coarse->n_triangles && status == QC_OK; h++) x[h] = q.x[h];
@@ -197,8 +208,8 @@ qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scal
     qc__heap_free(&q.heap);
     free_triangulation(&q.T);
     free_triangulation(&q.best);
-    void *const blocks[] = {q.wanted,   q.weight, q.turns,   q.expected,
-                            q.distance, q.parent, q.touched, q.path,     q.flips.halfedge};
+    void *const blocks[] = {q.wanted, q.weight,  q.turns, q.expected,      q.distance,
+                            q.parent, q.touched, q.path,  q.flips.halfedge};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
     return status;
 }

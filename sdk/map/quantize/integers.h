@@ -24,9 +24,10 @@ typedef struct qc__integers {
     int32_t bits;
     bool has_boundary;
     qc__point *x;   /* 3 n_triangles */
+    double reach;   /* length of a path in gains of its first crossing, at most */
     double scale;   /* the present one, of the vectors of T */
     double *wanted; /* 6 n_triangles: the real vectors at the present scale */
-    double *weight;      /* 3 n_triangles: of the edges in the energy */
+    double *weight; /* 3 n_triangles: of the edges in the energy */
     /* winding: axis directions in the sectors about a vertex of the mesh */
     int32_t n_origins;
     int32_t *turns, *expected; /* n_origins; expected -1 = any */

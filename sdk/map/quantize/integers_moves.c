@@ -75,7 +75,7 @@ static qc_status try_edge(qc__integers *q, int32_t h, bool *improved) {
     for (int32_t k = 0; k < 4; k++) {
         if (!qc__may_cross(&q->T, h, k)) continue;
         const double gain = -qc__integers_change(q, h, k);
-        const double limit = is_violated(q, h) ? mending_limit : gain;
+        const double limit = is_violated(q, h) ? mending_limit : gain * q->reach;
         if (!(limit > 0)) continue;
         bool found;
         const qc_status status = find_path(q, h, k, limit, &found);
