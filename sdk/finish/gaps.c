@@ -18,25 +18,28 @@ static double gap_at(const qc__relaxation *r, const double x[3], int32_t *face) 
     return r->closest->query(r->tree, x, face, weight);
 }
 
+double qc__quad_gap(const qc__relaxation *r, int32_t f) {
+    const int32_t *v = r->quads->face_vertex + 4 * (int64_t)f;
+    double centre[3] = {0, 0, 0}, x[3], gap = 0;
+    int32_t face = r->spot[v[0]].face;
+    for (int k = 0; k < 4; k++) {
+        const double *p = r->position + 3 * (int64_t)v[k];
+        const double *q = r->position + 3 * (int64_t)v[(k + 1) & 3];
+        for (int i = 0; i < 3; i++) {
+            centre[i] += 0.25 * p[i];
+            x[i] = 0.5 * (p[i] + q[i]);
+        }
+        gap = fmax(gap, gap_at(r, x, &face));
+    }
+    return fmax(gap, gap_at(r, centre, &face));
+}
+
 /* Distances from samples of the quads to the surface. */
 static void from_quads(void *arg, int64_t begin, int64_t end, uint32_t worker) {
     const gaps *g = arg;
     (void)worker;
-    for (int64_t f = g->first + begin; f < g->first + end; f++) {
-        const int32_t *v = g->r->quads->face_vertex + 4 * f;
-        double centre[3] = {0, 0, 0}, x[3], gap = 0;
-        int32_t face = g->r->spot[v[0]].face;
-        for (int k = 0; k < 4; k++) {
-            const double *p = g->r->position + 3 * (int64_t)v[k];
-            const double *q = g->r->position + 3 * (int64_t)v[(k + 1) & 3];
-            for (int i = 0; i < 3; i++) {
-                centre[i] += 0.25 * p[i];
-                x[i] = 0.5 * (p[i] + q[i]);
-            }
-            gap = fmax(gap, gap_at(g->r, x, &face));
-        }
-        g->gap[f] = fmax(gap, gap_at(g->r, centre, &face));
-    }
+    for (int64_t f = g->first + begin; f < g->first + end; f++)
+        g->gap[f] = qc__quad_gap(g->r, (int32_t)f);
 }
 
 /* Distances from the vertices of the surface to the quads. */
@@ -66,14 +69,13 @@ static void cut_quads(const qc_polygon_mesh *q, int32_t *vertex) {
         for (int k = 0; k < 6; k++) vertex[6 * f + k] = q->face_vertex[4 * f + corner[k]];
 }
 
-qc_status qc__measure_gaps(qc_ctx *ctx, const qc__relaxation *r, double *gap) {
+qc_status qc__measure_gaps(qc_ctx *ctx, const qc__relaxation *r, double *gap, int32_t *nearest) {
     const int32_t n = r->mesh->n_vertices;
-    gaps g = {.r = r, .gap = gap};
+    gaps g = {.r = r, .gap = gap, .nearest = nearest};
     qc_closest_tree *tree = NULL;
     int32_t *vertex = QC__NEW(ctx, int32_t, 6 * (int64_t)r->quads->n_faces);
-    g.nearest = QC__NEW(ctx, int32_t, n);
     g.distance = QC__NEW(ctx, double, n);
-    qc_status status = vertex && g.nearest && g.distance ? QC_OK : QC_ERR_NOMEM;
+    qc_status status = vertex && g.distance ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         cut_quads(r->quads, vertex);
         status =
@@ -89,7 +91,6 @@ qc_status qc__measure_gaps(qc_ctx *ctx, const qc__relaxation *r, double *gap) {
     }
     if (tree) r->closest->destroy(tree);
     qc__free(vertex);
-    qc__free(g.nearest);
     qc__free(g.distance);
     return status;
 }

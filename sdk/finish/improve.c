@@ -21,9 +21,9 @@ static void plane(const double normal[3], double u[3], double v[3]) {
     qc__cross3(normal, u, v);
 }
 
-/* Direction i of DIRECTIONS; on a curve only there and back. */
-static bool direction(const qc__relaxation *r, int32_t v, int i, double d[3]) {
-    const double angle = 6.283185307179586 * i / DIRECTIONS;
+/* On a curve only there and back. */
+bool qc__direction(const qc__relaxation *r, int32_t v, int i, int n, double d[3]) {
+    const double angle = 6.283185307179586 * i / n;
     double a[3], b[3];
     if (r->anchor[v] >= 0) {
         double weight[3];
@@ -53,7 +53,7 @@ static void improve(qc__relaxation *r, int32_t v, double enough, measure *bad) {
     bool found = false;
     for (int n = 0; n < LENGTHS; n++, length *= 0.5) {
         double d[3];
-        for (int i = 0; i < DIRECTIONS && direction(r, v, i, d); i++) {
+        for (int i = 0; i < DIRECTIONS && qc__direction(r, v, i, DIRECTIONS, d); i++) {
             qc__spot spot;
             for (int k = 0; k < 3; k++) d[k] *= length;
             if (!qc__step(r, v, d, &spot)) continue;

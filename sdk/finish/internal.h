@@ -102,8 +102,16 @@ typedef struct qc__relaxation {
 /* Which vertices slide on which curve. */
 qc_status qc__find_anchors(qc_ctx *ctx, qc__relaxation *r);
 
-/* Largest distance of each quad to the surface, and of the surface to it; gap: n_faces. */
-qc_status qc__measure_gaps(qc_ctx *ctx, const qc__relaxation *r, double *gap);
+/* Largest distance of each quad to the surface, and of the surface to it; gap: n_faces; nearest:
+ * the quad nearest to each vertex of the mesh. */
+qc_status qc__measure_gaps(qc_ctx *ctx, const qc__relaxation *r, double *gap, int32_t *nearest);
+/* That of a quad to the surface. */
+double qc__quad_gap(const qc__relaxation *r, int32_t f);
+/* Mends the quads which are worse than 0.3 quality, where distances stay within the limit; nearest:
+ * of qc__measure_gaps. */
+qc_status qc__quads_untangle(qc_ctx *ctx, double limit, const int32_t *nearest, qc__relaxation *r);
+/* Moves n vertices to better places in turn; step: n lengths, for its use. */
+void qc__quads_descend(qc__relaxation *r, int32_t n, const int32_t *vertex, double *step);
 
 /* r->size: mean edge lengths, averaged over neighbours a few times; r->ratio, with r->rectangles,
  * likewise. */
@@ -115,6 +123,10 @@ static inline double qc__size_at(const qc__relaxation *r, int32_t v) {
 /* Mean of the places which the squares (rectangles) closest to its quads give a vertex. */
 void qc__square_target(const qc__relaxation *r, int32_t v, double target[3]);
 
+/* Scaled Jacobian. */
+static inline double qc__quad_quality(const qc__relaxation *r, int32_t f) {
+    return qc__scaled_jacobian(r->position, r->quads->face_vertex + 4 * (int64_t)f, 4);
+}
 /* Least scaled Jacobian of the quads at v, were v at x. Thread: any, nothing is written. */
 double qc__ring_quality(const qc__relaxation *r, int32_t v, const double x[3]);
 /* Sum over the quads at v of (1 - scaled Jacobian)^8, likewise. */
@@ -136,5 +148,7 @@ qc_status qc__visit_all(qc_ctx *ctx, qc__relaxation *r, qc__visit *visit);
 void qc__towards_squares(qc__relaxation *r, int32_t v);
 void qc__improve_all(qc__relaxation *r, int32_t v);
 void qc__improve_worst(qc__relaxation *r, int32_t v);
+/* Direction i of n of the search for better places; false where a curve has fewer. */
+bool qc__direction(const qc__relaxation *r, int32_t v, int i, int n, double d[3]);
 
 #endif

@@ -111,9 +111,7 @@ static void restart(qc__relaxation *r, const qc__spot *start) {
 
 static double least_quality(const qc__relaxation *r) {
     double least = 1;
-    for (int32_t f = 0; f < r->quads->n_faces; f++)
-        least = fmin(least,
-                     qc__scaled_jacobian(r->position, r->quads->face_vertex + 4 * (int64_t)f, 4));
+    for (int32_t f = 0; f < r->quads->n_faces; f++) least = fmin(least, qc__quad_quality(r, f));
     return least;
 }
 
@@ -131,9 +129,10 @@ static qc_status iterate(qc_ctx *ctx, int32_t rounds, qc__relaxation *r) {
     return status;
 }
 
-static qc_status measure(qc_ctx *ctx, double from, double *gap, const qc__relaxation *r) {
+static qc_status measure(qc_ctx *ctx, double from, double *gap, int32_t *nearest,
+                         const qc__relaxation *r) {
     const qc__range outer = qc__range_begin(ctx, NULL, from, from + 0.1);
-    const qc_status status = qc__measure_gaps(ctx, r, gap);
+    const qc_status status = qc__measure_gaps(ctx, r, gap, nearest);
     qc__range_end(ctx, outer);
     return status;
 }
@@ -141,20 +140,24 @@ static qc_status measure(qc_ctx *ctx, double from, double *gap, const qc__relaxa
 /* Relaxes from the start with more and more vertices pinned, until the largest gap does not grow.
  * Where the quality of quads demands that it grows it does. */
 static qc_status relax(qc_ctx *ctx, int32_t rounds, const qc__spot *start, double *first,
-                       qc__relaxation *r) {
-    qc_status status = measure(ctx, 0, first, r);
+                       int32_t *nearest, qc__relaxation *r) {
+    qc_status status = measure(ctx, 0, first, nearest, r);
     const double limit = largest(r, first);
     bool done = false;
     for (int i = 0; i < ATTEMPTS && !done && status == QC_OK; i++) {
-        const double share = 0.9 / ATTEMPTS, begin = 0.1 + share * i;
+        const double share = 0.8 / ATTEMPTS, begin = 0.1 + share * i;
         const qc__range outer = qc__range_begin(ctx, NULL, begin, begin + share - 0.1);
         pin(r, first, pinned_part[i] * limit);
         restart(r, start);
         status = iterate(ctx, rounds, r);
         qc__range_end(ctx, outer);
-        if (status == QC_OK) status = measure(ctx, begin + share - 0.1, r->scratch, r);
+        if (status == QC_OK) status = measure(ctx, begin + share - 0.1, r->scratch, nearest, r);
         done = largest(r, r->scratch) <= limit * (1 + 1e-12);
     }
+    if (status != QC_OK) return status;
+    const qc__range outer = qc__range_begin(ctx, NULL, 0.9, 1);
+    status = qc__quads_untangle(ctx, largest(r, r->scratch) * (1 + 1e-12), nearest, r);
+    qc__range_end(ctx, outer);
     return status;
 }
 
@@ -162,13 +165,15 @@ static qc_status run(qc_ctx *ctx, int32_t rounds, qc__relaxation *r) {
     const int64_t n = r->quads->n_vertices;
     qc__spot *start = QC__NEW(ctx, qc__spot, n);
     double *first = QC__NEW(ctx, double, r->quads->n_faces);
-    qc_status status = start && first ? QC_OK : QC_ERR_NOMEM;
+    int32_t *nearest = QC__NEW(ctx, int32_t, r->mesh->n_vertices);
+    qc_status status = start && first && nearest ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK) {
         memcpy(start, r->spot, (size_t)n * sizeof *start);
-        status = relax(ctx, rounds, start, first, r);
+        status = relax(ctx, rounds, start, first, nearest, r);
     }
     qc__free(start);
     qc__free(first);
+    qc__free(nearest);
     return status;
 }
 

@@ -117,7 +117,7 @@ qc_status qc__number_corner_values(qc_ctx *ctx, int32_t n_vertices, int32_t n_co
 /* --- polygon quality (polygon_quality.c) */
 
 /* Smallest sine of a corner angle against the normal of the polygon with the given n vertices: 1
- * for a rectangle, <= 0 where a corner is reflex; 0 for one without area. */
+ * for a rectangle, <= 0 where a corner is reflex, -1 where an edge or the area vanishes. */
 double qc__scaled_jacobian(const double *position, const int32_t *vertex, int32_t n);
 
 /* --- polygon topology (polygon_topology.c, polygon_defects.c) */

@@ -29,7 +29,7 @@ double qc__scaled_jacobian(const double *position, const int32_t *v, int32_t n) 
         difference(position, v[i], v[(i + n - 1) % n], previous);
         qc__cross3(next, previous, c);
         const double scale2 = qc__dot3(next, next) * qc__dot3(previous, previous) * area2;
-        least = fmin(least, scale2 > 0 ? qc__dot3(c, normal) / sqrt(scale2) : 0.0);
+        least = fmin(least, scale2 > 0 ? qc__dot3(c, normal) / sqrt(scale2) : -1.0);
     }
     return least;
 }

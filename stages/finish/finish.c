@@ -75,17 +75,18 @@ const qc_stage qc_stage_finish = {
     .id = "qc.finish",
     .version = "1.0",
     .brief = "Relaxes the quads on the surface, with features and boundary kept.",
-    .doc =
-        "Each vertex moves to the mean of the places which the squares closest to its quads "
-        "give it, in the tangent plane, and from there to the closest point of the surface. "
-        "Vertices on the boundary and on features slide along their curve; corners stay. A step "
-        "which would turn a quad over, or make it worse than `quality`, is halved or not made. "
-        "Then the vertices of quads which are still worse are searched a better place, and no quad "
-        "comes to face away from the surface. Where "
-        "edge lengths depend on the direction, rectangles of the proportions around take the "
-        "place of squares. Source "
-        "faces and barycentric coordinates are those of the new places.",
-    .cite = "Bouaziz et al., Shape-Up (2012); Freitag and Ollivier-Gooch (1997)",
+    .doc = "Each vertex moves to the mean of the places which the squares closest to its quads "
+           "give it, in the tangent plane, and from there to the closest point of the surface. "
+           "Vertices on the boundary and on features slide along their curve; corners stay. A step "
+           "which would turn a quad over, or make it worse than `quality`, is halved or not made. "
+           "Then the vertices of quads which are still worse are searched a better place, of the "
+           "worst "
+           "ones all about them together, and no quad comes to face away from the surface. Where "
+           "edge lengths depend on the direction, rectangles of the proportions around take the "
+           "place of squares. Source "
+           "faces and barycentric coordinates are those of the new places.",
+    .cite = "Bouaziz et al., Shape-Up (2012); Freitag and Ollivier-Gooch (1997); Garanzha et al., "
+            "Foldover-free maps in 50 lines of code (2021)",
     .in = in,
     .out = out,
     .n_in = sizeof in / sizeof *in,

@@ -125,6 +125,21 @@ static void no_quad_comes_to_face_away(void **state) {
     qc_object_release(m);
 }
 
+/* So much moved that no vertex alone finds a place where its quads are right. */
+static void tangled_quads_are_mended(void **state) {
+    qc_mesh *m = grid(*state, 5, 5, 0, 1);
+    for (int i = 19; i <= 25; i++) {
+        qc_polygon_mesh *q = quad_grid(*state, 8, 0.05 * i, -1, 1);
+        qc_polygon_mesh *out = relax(*state, m, q, NULL);
+        assert_true(least_jacobian(q) < -0.9);
+        assert_true(least_jacobian(out) > 0.15);
+        assert_true(facing_away(out) <= facing_away(q));
+        qc_object_release(out);
+        qc_object_release(q);
+    }
+    qc_object_release(m);
+}
+
 /* A copy which says that the edges in column i of quad_grid() are on features. */
 static qc_polygon_mesh *with_lines(qc_ctx *ctx, const qc_polygon_mesh *q, int n, int i) {
     qc_polygon_mesh *copy = NULL;
@@ -243,7 +258,7 @@ int main(void) {
         cmocka_unit_test(no_quad_gets_worse),     cmocka_unit_test(no_quad_comes_to_face_away),
         cmocka_unit_test(features_are_kept),      cmocka_unit_test(scale_changes_nothing_else),
         cmocka_unit_test(threads_change_nothing), cmocka_unit_test(bad_input_is_named),
-        cmocka_unit_test(proportions_are_kept),
+        cmocka_unit_test(proportions_are_kept),   cmocka_unit_test(tangled_quads_are_mended),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
