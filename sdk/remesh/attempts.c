@@ -2,15 +2,20 @@
  * integers from quantization and its refined mesh, where no map folds over, or with other ones
  * where that is not possible; with more quads, since where they are too large for the distances
  * between singularities they meet themselves; with fewer hard features, since some contradict each
- * other or lie too close; and in the end without the condition that features lie on isolines. */
+ * other or lie too close; and in the end without the condition that features lie on isolines.
+ *
+ * Optimising the branch points takes longer than all other steps, so it is done once: before it,
+ * what the features leave no room for is given up on the field as it is (the rehearsal), and where
+ * they leave none afterwards the field is taken as it was. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "sdk/map/periods/room.h"
 #include "sdk/remesh/internal.h"
 
 /* Which hard features an attempt keeps. */
-enum { ALL, LESS_ONE, LESS_QUARTER, LESS_HALF, BOUNDARIES, GUIDES };
+enum { ALL, AS_SMOOTHED, LESS_ONE, LESS_QUARTER, LESS_HALF, BOUNDARIES, GUIDES };
 
 /* One attempt: other integers, more quads (in steps of sqrt(2)), features. */
 typedef struct rung {
@@ -18,9 +23,10 @@ typedef struct rung {
 } rung;
 
 static const rung ladder[] = {
-    {0, 0, ALL},          {1, 0, ALL},       {0, 1, ALL},        {0, 0, LESS_ONE}, {0, 0, LESS_ONE},
-    {0, 0, LESS_QUARTER}, {0, 0, LESS_HALF}, {0, 0, BOUNDARIES}, {0, 0, GUIDES},   {1, 0, GUIDES},
-    {0, 1, GUIDES},       {0, 2, GUIDES},    {0, 4, GUIDES},     {0, 6, GUIDES},
+    {0, 0, ALL},        {1, 0, ALL},      {0, 1, ALL},          {0, 0, AS_SMOOTHED},
+    {0, 0, LESS_ONE},   {0, 0, LESS_ONE}, {0, 0, LESS_QUARTER}, {0, 0, LESS_HALF},
+    {0, 0, BOUNDARIES}, {0, 0, GUIDES},   {1, 0, GUIDES},       {0, 1, GUIDES},
+    {0, 2, GUIDES},     {0, 4, GUIDES},   {0, 6, GUIDES},
 };
 enum { RUNGS = (int)(sizeof ladder / sizeof *ladder) };
 
@@ -29,11 +35,15 @@ typedef struct climb {
     qc_pipeline *pipeline;
     qc_bag *bag;
     uint32_t first, end;
-    int64_t round, features; /* steps, -1 = none */
-    uint64_t seed;           /* what the user set */
+    int64_t round, features;      /* steps, -1 = none */
+    qc__product edges;            /* the features which the field is aligned to */
+    uint32_t optimise, optimised; /* the steps from one to before the other change branch points */
+    bool rehearsal;               /* no further than to a map with real translations */
+    bool as_smoothed;             /* without these steps */
+    uint64_t seed;                /* what the user set */
     double refine;
     char quantize[16];
-    bool hard;
+    bool hard, was_hard; /* features, now and in the first attempt */
     qc__concessions given_up;
 } climb;
 
@@ -47,17 +57,30 @@ static const char *name_of(const climb *c, int64_t step) {
     return qc_pipeline_step_name(c->pipeline, (uint32_t)step);
 }
 
-static void name_features(const climb *c, char name[128]) {
-    snprintf(name, 128, "%s.features", name_of(c, c->features));
+static bool has_hard_features(const climb *c) {
+    const qc_features *features =
+        qc__product_of(c->pipeline, c->bag, (uint32_t)c->round, QC_TYPE_FEATURES).object;
+    return features && features->hard && features->n_feature_edges > 0;
 }
 
-/* The features of the first attempt; without any there is nothing hard. */
+/* Without hard features there is nothing to give up. */
 static qc_status find_features(climb *c) {
-    char name[128];
-    name_features(c, name);
-    const qc_features *features = qc_bag_get(c->bag, name);
-    c->hard = features && features->hard && features->n_feature_edges > 0;
-    return c->hard ? qc__concessions_create(c->ctx, features, &c->given_up) : QC_OK;
+    c->edges = qc__product_of(c->pipeline, c->bag, (uint32_t)c->features + 1, QC_TYPE_FEATURES);
+    c->hard = c->edges.object && has_hard_features(c);
+    c->was_hard |= c->hard;
+    if (!c->hard || c->given_up.features) return QC_OK;
+    return qc__concessions_create(c->ctx, c->edges.object, &c->given_up);
+}
+
+static void find_optimisation(climb *c) {
+    static const char prefix[] = "qc.optimize.";
+    c->optimise = c->optimised = 0;
+    for (uint32_t i = c->first; i < (uint32_t)c->round; i++) {
+        if (strncmp(qc_pipeline_step_stage(c->pipeline, i)->id, prefix, sizeof prefix - 1) != 0)
+            continue;
+        if (c->optimised == 0) c->optimise = i;
+        c->optimised = i + 1;
+    }
 }
 
 /* A text from the pipeline is valid until the next call. */
@@ -73,18 +96,17 @@ static qc_status read_settings(climb *c) {
 
 /* Replaces the features by those which are left. */
 static qc_status put_features(const climb *c) {
-    char name[128];
     qc_features *left = NULL;
-    name_features(c, name);
     qc_status status = qc__concessions_features(c->ctx, &c->given_up, &left);
-    if (status == QC_OK) status = qc_bag_put(c->bag, name, left);
+    if (status == QC_OK) status = qc_bag_put(c->bag, c->edges.name, left);
     qc_object_release(left);
     return status;
 }
 
 /* Whether an attempt is one where the integers of the user's own settings have failed. */
 static bool wants_quantization(const climb *c, rung r) {
-    const bool own = r.other == 0 && r.finer == 0 && (r.keep == ALL || r.keep == GUIDES);
+    const bool first = r.keep == ALL || r.keep == AS_SMOOTHED || r.keep == GUIDES;
+    const bool own = r.other == 0 && r.finer == 0 && first;
     return !own && strcmp(c->quantize, "never") != 0;
 }
 
@@ -98,7 +120,7 @@ static qc_status set_rung(const climb *c, rung r) {
     if (status == QC_OK)
         status = qc_pipeline_set(c->pipeline, step, "quantize",
                                  wants_quantization(c, r) ? "always" : c->quantize);
-    if (status != QC_OK || !c->hard) return status;
+    if (status != QC_OK || !c->was_hard) return status;
     return qc_pipeline_set(c->pipeline, name_of(c, c->features), "hard",
                            r.keep == GUIDES ? "false" : "true");
 }
@@ -120,6 +142,7 @@ static void warn_compromise(const climb *c, rung r, const char *reason) {
 
 static const char *difference(rung from, rung to) {
     if (to.keep == GUIDES && from.keep != GUIDES) return "features as guides alone";
+    if (to.keep == AS_SMOOTHED) return "the branch points of the smooth field";
     if (to.keep != ALL && to.keep != GUIDES) return "fewer features";
     return to.finer > 0 ? "more quads" : "other integers";
 }
@@ -139,6 +162,7 @@ static bool worth_trying(const climb *c, rung next, rung before) {
     const qc__concessions *f = &c->given_up;
     if (!c->hard) return next.keep == GUIDES && !failed_early(c);
     if (next.keep == ALL) return !failed_early(c);
+    if (next.keep == AS_SMOOTHED) return c->optimised > 0 && !c->rehearsal;
     if (next.keep == GUIDES) return before.keep != GUIDES || !failed_early(c);
     return f->n_gone < f->n;
 }
@@ -181,30 +205,77 @@ static qc_status give_up_features(climb *c, int32_t keep) {
                                 known ? place : NULL, quad, reason);
 }
 
+/* Steps from .. end - 1 in [lo, hi] of the progress. */
+static qc_status run_range(const climb *c, uint32_t from, uint32_t end, double lo, double hi) {
+    if (from >= end) return QC_OK;
+    const qc__range outer = qc__range_begin(c->ctx, NULL, lo, hi);
+    const qc_status status = qc_pipeline_run_range(c->pipeline, from, end, c->bag);
+    qc__range_end(c->ctx, outer);
+    return status;
+}
+
+/* Puts what goes into the optimisation in the place of what comes out. */
+static qc_status undo_optimisation(const climb *c) {
+    qc_status status = QC_OK;
+    for (uint32_t i = c->optimise; i < c->optimised; i++) {
+        const qc_stage *stage = qc_pipeline_step_stage(c->pipeline, i);
+        for (uint32_t k = 0; k < stage->n_out && status == QC_OK; k++) {
+            const qc_port *port = qc_stage_out(stage, k);
+            const qc__product before = qc__product_of(c->pipeline, c->bag, c->optimise, port->type);
+            char name[128];
+            snprintf(name, sizeof name, "%s.%s", name_of(c, i), port->name);
+            if (before.object) status = qc_bag_put(c->bag, name, before.object);
+        }
+    }
+    return status;
+}
+
+/* Steps before the optimisation, and whether hard features leave room for a map with the field as
+ * it is. */
+static qc_status rehearse(const climb *c, uint32_t from) {
+    qc_status status = run_range(c, from, c->optimise, 0, 0);
+    if (status != QC_OK || !has_hard_features(c)) return status;
+    status = run_range(c, c->optimised, (uint32_t)c->round, 0, 0);
+    if (status != QC_OK) return status;
+    const qc__product map =
+        qc__product_of(c->pipeline, c->bag, (uint32_t)c->round, QC_TYPE_SEAMLESS_MAP);
+    if (!map.object) return QC_OK;
+    const qc__range outer = qc__range_begin(c->ctx, name_of(c, c->round), 0, 0);
+    const qc__time time = qc__time_begin_step(c->ctx);
+    status = qc__map_has_room(c->ctx, map.object);
+    qc__time_end_step(c->ctx, time);
+    qc__range_end(c->ctx, outer);
+    return status;
+}
+
 /* Steps from `from` on, apart up to the rounding, so that what they make is there for the next
  * attempt; [lo, 1] of the progress. */
 static qc_status run_from(const climb *c, uint32_t from, double lo) {
     const uint32_t round = (uint32_t)c->round;
     const double middle = lo + (1 - lo) * (double)(round - from) / (c->end - from);
-    qc__range outer = qc__range_begin(c->ctx, NULL, lo, middle);
-    qc_status status =
-        from < round ? qc_pipeline_run_range(c->pipeline, from, round, c->bag) : QC_OK;
-    qc__range_end(c->ctx, outer);
-    if (status != QC_OK) return status;
-    outer = qc__range_begin(c->ctx, NULL, middle, 1);
-    status = qc_pipeline_run_range(c->pipeline, round, c->end, c->bag);
-    qc__range_end(c->ctx, outer);
-    return status;
+    qc_status status = QC_OK;
+    if (c->rehearsal) return rehearse(c, from);
+    if (c->as_smoothed && from < c->optimised) {
+        status = run_range(c, from, c->optimise, lo, middle);
+        if (status == QC_OK) status = undo_optimisation(c);
+        from = c->optimised;
+    }
+    if (status == QC_OK) status = run_range(c, from, round, lo, middle);
+    return status == QC_OK ? run_range(c, round, c->end, middle, 1) : status;
 }
 
 static qc_status run_rung(climb *c, rung before, rung r) {
-    const bool fewer = r.keep != ALL && r.keep != GUIDES;
+    const bool fewer = r.keep >= LESS_ONE && r.keep <= BOUNDARIES;
     const bool soft = c->hard && r.keep == GUIDES && before.keep != GUIDES;
     qc_status status = fewer ? give_up_features(c, r.keep) : QC_OK;
     if (status == QC_OK && fewer) status = put_features(c);
     if (status == QC_OK) status = set_rung(c, r);
+    c->as_smoothed |= r.keep == AS_SMOOTHED;
     /* with other features the field changes as well */
-    const int64_t from = soft ? c->features : fewer ? c->features + 1 : c->round;
+    const int64_t from = soft                    ? c->features
+                         : fewer                 ? c->edges.step + 1
+                         : r.keep == AS_SMOOTHED ? c->optimise
+                                                 : c->round;
     return status == QC_OK ? run_from(c, (uint32_t)from, 1) : status;
 }
 
@@ -228,6 +299,22 @@ static qc_status run_ladder(climb *c, qc_status status) {
     return status == QC_OK ? restored : status;
 }
 
+/* The first attempt, and others while they fail. */
+static qc_status climb_up(climb *c, uint32_t from) {
+    qc_status status = run_from(c, from, 0);
+    if (status != QC_ERR_FAILED) return status;
+    const qc_status read = read_settings(c);
+    return read == QC_OK ? run_ladder(c, status) : read;
+}
+
+/* What hard features leave no room for is given up before the branch points are optimised. */
+static qc_status prepare_optimisation(climb *c) {
+    c->rehearsal = true;
+    const qc_status status = climb_up(c, c->first);
+    c->rehearsal = false;
+    return status;
+}
+
 qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t first, qc_bag *bag) {
     climb c = {.ctx = ctx,
                .pipeline = pipeline,
@@ -237,10 +324,9 @@ qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t fir
                .round = find_step(pipeline, first, "qc.round"),
                .features = find_step(pipeline, first, "qc.features")};
     if (c.round < 0) return qc_pipeline_run_range(pipeline, first, c.end, bag);
-    qc_status status = run_from(&c, first, 0);
-    if (status != QC_ERR_FAILED) return status;
-    const qc_status read = read_settings(&c);
-    status = read == QC_OK ? run_ladder(&c, status) : read;
+    find_optimisation(&c);
+    qc_status status = c.optimised > 0 ? prepare_optimisation(&c) : QC_OK;
+    if (status == QC_OK) status = climb_up(&c, c.optimised > 0 ? c.optimise : first);
     qc__concessions_clear(&c.given_up);
     return status;
 }

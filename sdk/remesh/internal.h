@@ -65,6 +65,16 @@ qc_status qc__concessions_grow(qc_ctx *ctx, qc__concessions *concessions, int32_
 qc_status qc__concessions_features(qc_ctx *ctx, const qc__concessions *concessions,
                                    qc_features **out);
 
+/* What the last step before `end` which made an object of this type has put into the bag; object
+ * NULL: there is none. */
+typedef struct qc__product {
+    int64_t step;
+    const void *object; /* borrowed */
+    char name[128];
+} qc__product;
+qc__product qc__product_of(const qc_pipeline *pipeline, const qc_bag *bag, uint32_t end,
+                           const char *type);
+
 /* Fails where the quads of a component are not a manifold of quads with the topology of its mesh.
  */
 qc_status qc__check_promises(qc_ctx *ctx, const qc_mesh *mesh, const qc_polygon_mesh *quads);

@@ -3,6 +3,8 @@
 #include "sdk/map/periods/round.h"
 #include <string.h>
 
+#include "sdk/map/periods/room.h"
+
 enum { LARGEST_PERIOD_MATRIX = 4000 }; /* variables; beyond it periods are rounded directly */
 
 static qc_status prepare(qc__rounding *r) {
@@ -82,6 +84,33 @@ static qc_status refuse_impossible(const qc__rounding *r) {
         (int)cone[0], (int)cone[1]);
 }
 
+static void release(qc__rounding *r) {
+    qc__imprint_free(&r->imprint);
+    qc__separation_free(r->separation);
+    qc__periods_free(r->periods);
+    qc__seams_free(r->seams);
+    void *const blocks[] = {r->cotangent, r->f,      r->trial,  r->best,    r->P,
+                            r->period,    r->gap,    r->target, r->rounded, r->best_rounded,
+                            r->z,         r->symbol, r->wedge,  r->F,       r->correction};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+}
+
+/* All that comes before integers are chosen. */
+static qc_status find_real_map(qc__rounding *r) {
+    qc_status status = refuse_impossible(r);
+    if (status == QC_OK) status = prepare(r);
+    if (status == QC_OK) status = make_period_matrix(r);
+    return status == QC_OK ? qc__round_align(r) : status;
+}
+
+qc_status qc__map_has_room(qc_ctx *ctx, const qc_seamless_map *seamless) {
+    qc__rounding r = {.ctx = ctx, .seamless = seamless, .mesh = seamless->matching->field->mesh};
+    r.options = (qc_round_options)QC_ROUND_OPTIONS_INIT;
+    const qc_status status = find_real_map(&r);
+    release(&r);
+    return status;
+}
+
 qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
                        const qc_round_options *options, qc_corner_map **out) {
     qc__rounding r = {.ctx = ctx, .seamless = seamless, .mesh = seamless->matching->field->mesh};
@@ -91,19 +120,9 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
                options->struct_size < sizeof r.options ? options->struct_size : sizeof r.options);
     if (!(r.options.tolerance > 0)) r.options.tolerance = 0.02;
     if (!(r.options.refine > 0)) r.options.refine = 1;
-    qc_status status = refuse_impossible(&r);
-    if (status == QC_OK) status = prepare(&r);
-    if (status == QC_OK) status = make_period_matrix(&r);
-    if (status == QC_OK) status = qc__round_align(&r);
+    qc_status status = find_real_map(&r);
     if (status == QC_OK) status = qc__round_meet(&r);
     if (status == QC_OK) status = qc__round_publish(&r, out);
-    qc__imprint_free(&r.imprint);
-    qc__separation_free(r.separation);
-    qc__periods_free(r.periods);
-    qc__seams_free(r.seams);
-    void *const blocks[] = {r.cotangent, r.f,      r.trial,  r.best,    r.P,
-                            r.period,    r.gap,    r.target, r.rounded, r.best_rounded,
-                            r.z,         r.symbol, r.wedge,  r.F,       r.correction};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+    release(&r);
     return status;
 }
