@@ -22,14 +22,14 @@ static void area_vector(const double *position, const int32_t *v, int32_t n, dou
 double qc__scaled_jacobian(const double *position, const int32_t *v, int32_t n) {
     double normal[3], least = 1;
     area_vector(position, v, n, normal);
-    const double area2 = qc__dot3(normal, normal);
+    const double area = qc__norm3(normal);
     for (int32_t i = 0; i < n; i++) {
         double next[3], previous[3], c[3];
         difference(position, v[i], v[(i + 1) % n], next);
         difference(position, v[i], v[(i + n - 1) % n], previous);
         qc__cross3(next, previous, c);
-        const double scale2 = qc__dot3(next, next) * qc__dot3(previous, previous) * area2;
-        least = fmin(least, scale2 > 0 ? qc__dot3(c, normal) / sqrt(scale2) : -1.0);
+        const double scale = qc__norm3(next) * qc__norm3(previous) * area;
+        least = fmin(least, scale > 0 ? qc__dot3(c, normal) / scale : -1);
     }
     return least;
 }

@@ -1,5 +1,6 @@
 /* Polygon meshes: creation, union, combinatorial check. */
 #include "unit/mesh/fixtures.h"
+#include "sdk/mesh/internal.h"
 
 static qc_polygon_mesh *polygons(qc_ctx *ctx, int32_t n_vertices, int32_t n_faces, int32_t size,
                                  const int32_t *vertex) {
@@ -137,12 +138,31 @@ static void test_merge(void **state) {
     qc_object_release(b);
 }
 
+/* The same at any scale; nothing is worse than two neighbours in one place. */
+static void test_scaled_jacobian(void **state) {
+    (void)state;
+    static const int32_t order[] = {0, 1, 2, 3};
+    static const double scale[] = {1, 1e-60, 1e60};
+    for (int i = 0; i < 3; i++) {
+        const double s = scale[i];
+        double x[12] = {0, 0, 0, s, 0, 0, s, s, 0, 0, s, 0};
+        assert_float_equal(qc__scaled_jacobian(x, order, 4), 1, 1e-12);
+        x[6] = x[7] = 0.25 * s; /* reflex there */
+        const double reflex = qc__scaled_jacobian(x, order, 4);
+        assert_true(reflex < 0 && reflex > -1);
+        x[6] = s; /* where the corner before is */
+        x[7] = 0;
+        assert_true(qc__scaled_jacobian(x, order, 4) == -1);
+        for (int k = 0; k < 12; k++) x[k] = s;
+        assert_true(qc__scaled_jacobian(x, order, 4) == -1);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean),
-        cmocka_unit_test(test_defects),
-        cmocka_unit_test(test_bad_arrays),
-        cmocka_unit_test(test_merge),
+        cmocka_unit_test(test_clean),           cmocka_unit_test(test_defects),
+        cmocka_unit_test(test_bad_arrays),      cmocka_unit_test(test_merge),
+        cmocka_unit_test(test_scaled_jacobian),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
