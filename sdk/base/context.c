@@ -144,6 +144,10 @@ bool qc__progress(qc_ctx *ctx, double fraction) {
     return false;
 }
 
+qc_status qc__poll(qc_ctx *ctx) {
+    return qc__progress(ctx, 0) ? QC_OK : QC_ERR_CANCELLED;
+}
+
 void qc__detail(qc_ctx *ctx, const char *format, ...) {
     va_list args;
     va_start(args, format);

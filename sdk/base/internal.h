@@ -54,6 +54,9 @@ void qc__log(qc_ctx *ctx, int32_t level, const char *format, ...) QC__PRINTF(3, 
  * error is already recorded). Calling thread only; cheap enough for every few hundred microseconds
  * of work. Without a callback always true. */
 bool qc__progress(qc_ctx *ctx, double fraction);
+/* Asks whether to go on: OK or CANCELLED; bars stay where they are (the fraction is 0 again). For
+ * steps of a tenth of a second on a million faces between which nothing else asks. */
+qc_status qc__poll(qc_ctx *ctx);
 /* True once the callback asked to stop; any thread may poll it inside a parallel_for. */
 bool qc__cancelled(const qc_ctx *ctx);
 

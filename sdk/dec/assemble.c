@@ -132,8 +132,9 @@ qc_status qc__assemble(qc_ctx *ctx, int32_t n_faces, const double *cotangent, do
     if (status == QC_OK && !qc__progress(ctx, 0.5)) status = QC_ERR_CANCELLED;
     if (status == QC_OK) {
         add_diagonal(&a);
-        status = make_columns(ctx, &a, &out->A);
+        status = qc__poll(ctx);
     }
+    if (status == QC_OK) status = make_columns(ctx, &a, &out->A);
     qc__free(a.start);
     qc__free(a.column);
     qc__free(a.value);

@@ -55,7 +55,9 @@ static qc_status shape_operators(qc_ctx *ctx, const qc_mesh *mesh, int32_t estim
     double *real = QC__NEW(ctx, double, 3 * F), *imaginary = QC__NEW(ctx, double, 3 * F);
     qc_status status = normal && area && beta && real && imaginary ? QC_OK : QC_ERR_NOMEM;
     if (!status) status = qc_mesh_geometry(ctx, mesh, NULL, area, NULL, NULL, normal, NULL);
+    if (!status) status = qc__poll(ctx);
     if (!status) status = qc_tangent_frames(ctx, mesh, real, imaginary);
+    if (!status) status = qc__poll(ctx);
     if (!status) {
         qc__edge_bending(ctx, mesh, normal, beta);
         status =

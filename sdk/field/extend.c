@@ -2,41 +2,39 @@
  * its directions, which are then transported breadth first to the rest. */
 #include "internal.h"
 
-#include <stdlib.h>
+#include "sdk/mesh/internal.h"
 
 /* Below this weight (a radius of curvature of 1e6 quads) a face is flat and says nothing. */
 #define FLAT 1e-6
 
-typedef struct entry {
-    double weight;
-    int32_t component, face;
-} entry;
-
-static int by_stability(const void *pa, const void *pb) {
-    const entry *a = pa, *b = pb;
-    if (a->component != b->component) return a->component < b->component ? -1 : 1;
-    if (a->weight != b->weight) return a->weight > b->weight ? -1 : 1;
-    return a->face < b->face ? -1 : a->face > b->face;
+/* Faces by falling weight, then by number: keys grow where weights fall. */
+static qc_status sort_by_stability(qc_ctx *ctx, int32_t n, const double *weight, int32_t *face) {
+    uint64_t *key = QC__NEW(ctx, uint64_t, n);
+    qc_status status = key ? qc__poll(ctx) : QC_ERR_NOMEM;
+    for (int32_t t = 0; !status && t < n; t++) {
+        face[t] = t;
+        key[t] = weight[t] > 0 ? ~qc__sort_key(weight[t]) : UINT64_MAX;
+    }
+    if (!status) status = qc__sort_keys(ctx, n, key, face);
+    qc__free(key);
+    return status;
 }
 
 /* Flags the most stable faces which make up the fraction of each component's area. */
 static qc_status trust(qc_ctx *ctx, const qc_mesh *mesh, const double *weight, const double *area,
                        double fraction, uint8_t *trusted) {
     int32_t F = mesh->n_faces;
-    entry *order = QC__NEW(ctx, entry, F);
+    int32_t *order = QC__NEW(ctx, int32_t, F);
     double *budget = QC__ZERO(ctx, double, mesh->n_components);
-    qc_status status = order && budget ? QC_OK : QC_ERR_NOMEM;
+    qc_status status = order && budget ? sort_by_stability(ctx, F, weight, order) : QC_ERR_NOMEM;
     if (!status) {
-        for (int32_t t = 0; t < F; t++) {
-            order[t] = (entry){weight[t], mesh->face_component[t], t};
-            budget[mesh->face_component[t]] += fraction * area[t];
-        }
-        qsort(order, (size_t)F, sizeof *order, by_stability);
+        for (int32_t t = 0; t < F; t++) budget[mesh->face_component[t]] += fraction * area[t];
         for (int32_t i = 0; i < F; i++) {
-            const entry *o = order + i;
-            if (!(o->weight > FLAT) || !(budget[o->component] > 0)) continue;
-            trusted[o->face] = 1;
-            budget[o->component] -= area[o->face];
+            const int32_t t = order[i];
+            double *left = budget + mesh->face_component[t];
+            if (!(weight[t] > FLAT) || !(*left > 0)) continue;
+            trusted[t] = 1;
+            *left -= area[t];
         }
     }
     qc__free(order);

@@ -154,7 +154,9 @@ qc_status qc__curvature_normal_cycle(qc_ctx *ctx, const qc_mesh *mesh, double ra
     job.visited = QC__ZERO(ctx, int32_t, workers * F);
     job.queue = QC__NEW(ctx, int32_t, workers * FACE_LIMIT);
     qc_status status = job.patch && job.tensor && job.visited && job.queue ? QC_OK : QC_ERR_NOMEM;
+    if (!status) status = qc__poll(ctx);
     if (!status) fill_patches(mesh, beta, area, job.patch);
+    if (!status) status = qc__poll(ctx);
     /* Slices keep the time between two progress calls short. */
     int64_t slice = CHUNK * 4 * (int64_t)workers;
     for (job.first = 0; !status && job.first < V; job.first += slice) {

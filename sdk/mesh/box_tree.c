@@ -6,12 +6,14 @@
 #include <math.h>
 #include <string.h>
 
-enum { LEAF = 4 };
+enum { LEAF = 4, POLL = 1 << 16 /* triangles of a box before which it asks whether to go on */ };
 
 typedef struct builder {
+    qc_ctx *ctx;
     const double *centroid; /* 3 n */
     int32_t *order;
     qc__box_tree *tree;
+    bool stopped;
 } builder;
 
 /* Moves the `middle - begin` smallest along `axis` to the front of order[begin, end). */
@@ -57,6 +59,8 @@ static void split(builder *b, int32_t at, int32_t begin, int32_t end) {
         self->count = end - begin;
         return;
     }
+    if (end - begin > POLL && !b->stopped) b->stopped = qc__poll(b->ctx) != QC_OK;
+    if (b->stopped) return;
     const int32_t middle = begin + (end - begin) / 2;
     select_median(b, begin, end, middle, longest_axis(b, begin, end));
     self->first = b->tree->n_boxes;
@@ -133,9 +137,14 @@ qc_status qc__box_tree_build(qc_ctx *ctx, int32_t n, const double *position, con
                  position[3 * (int64_t)v[2] + k]) /
                 3;
     }
-    builder b = {centroid, tree.order, &tree};
+    builder b = {ctx, centroid, tree.order, &tree, false};
     tree.n_boxes = 1;
     split(&b, 0, 0, n);
+    if (b.stopped) {
+        qc__free(centroid);
+        qc__box_tree_free(&tree);
+        return QC_ERR_CANCELLED;
+    }
     for (int32_t i = 0; i < n; i++) tree.place[tree.order[i]] = i;
     copy_corners(&b, n, position, vertex);
     fit_boxes(&tree);

@@ -28,7 +28,9 @@ qc_status qc__feature_network_create(qc_ctx *ctx, const qc_mesh *mesh, const uin
         !w->list || !w->chain)
         return QC_ERR_NOMEM;
     for (size_t e = 0; e < E; e++) w->edge[e] = edge[e];
-    const qc_status status = qc__crease_angles(ctx, mesh, w->crease);
+    qc_status status = qc__poll(ctx);
+    if (!status) status = qc__crease_angles(ctx, mesh, w->crease);
+    if (!status) status = qc__poll(ctx);
     return status ? status
                   : qc_mesh_geometry(ctx, mesh, w->length, NULL, NULL, w->angle, NULL, NULL);
 }

@@ -34,6 +34,7 @@ qc_status qc__crease_angles(qc_ctx *ctx, const qc_mesh *m, double *angle) {
     qc_status status = normal && cotangent ? QC_OK : QC_ERR_NOMEM;
     if (status == QC_OK)
         status = qc_mesh_geometry(ctx, m, NULL, NULL, cotangent, NULL, normal, NULL);
+    if (status == QC_OK) status = qc__poll(ctx);
     for (int32_t e = 0; status == QC_OK && e < m->n_edges; e++)
         angle[e] = m->edge_halfedge[2 * e + 1] < 0 ? 0 : dihedral(m, normal, cotangent, e);
     qc__free(normal);

@@ -90,8 +90,11 @@ static void measure(qc_mesh *m) {
 }
 
 static qc_status connect(qc_ctx *ctx, qc_mesh *m) {
-    qc_status status = qc__mesh_pair(ctx, m);
+    qc_status status = qc__poll(ctx);
+    if (status == QC_OK) status = qc__mesh_pair(ctx, m);
+    if (status == QC_OK) status = qc__poll(ctx);
     if (status == QC_OK) status = qc__mesh_edges(ctx, m);
+    if (status == QC_OK) status = qc__poll(ctx);
     if (status == QC_OK) status = qc__mesh_fans(ctx, m);
     if (status == QC_OK) status = qc__mesh_components(ctx, m);
     if (status == QC_OK) status = qc__mesh_walk_boundary(ctx, m, &m->n_boundary_loops, NULL, NULL);

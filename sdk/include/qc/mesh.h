@@ -165,7 +165,7 @@ typedef struct qc_mesh {
  * ARGUMENT (index out of range, a vertex twice in a face; where = face; a coordinate which is not
  * finite, where = vertex), NON_MANIFOLD (where = face of
  * an edge with three faces or inconsistent orientation, or a vertex with two fans; the text names
- * it; unreferenced vertices are ARGUMENT with where = vertex), NOMEM. */
+ * it; unreferenced vertices are ARGUMENT with where = vertex), NOMEM, CANCELLED. */
 QC_API qc_status qc_mesh_create(qc_ctx *ctx, int32_t n_vertices, const double *position,
                                 int32_t n_faces, const int32_t *face_vertex, qc_mesh **out);
 /* The same with source numbers attached (either may be NULL; copied). */

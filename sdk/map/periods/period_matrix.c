@@ -226,7 +226,10 @@ qc_status qc__period_matrix(qc_ctx *ctx, const qc__periods *p, double *P) {
             load_column(p, j, &scratch);
             assemble_rhs(p, scratch.wedge, x + (j - first) * rows);
         }
-        status = qc__map_stiffness_solve(ctx, p->stiffness, (int32_t)(last - first), x);
+        status = qc__poll(ctx);
+        if (status == QC_OK)
+            status = qc__map_stiffness_solve(ctx, p->stiffness, (int32_t)(last - first), x);
+        if (status == QC_OK) status = qc__poll(ctx);
         for (int64_t j = first; j < last && status == QC_OK; j++) {
             load_column(p, j, &scratch);
             qc__periods_spread(p, x + (j - first) * rows, scratch.F);
@@ -246,7 +249,8 @@ qc_status qc__periods_extend(qc_ctx *ctx, const qc__periods *p, const double _Co
     if (!x) return QC_ERR_NOMEM;
     assemble_rhs(p, wedge, x);
     if (load) add_load(p, -1, load, x);
-    const qc_status status = qc__map_stiffness_solve(ctx, p->stiffness, 1, x);
+    qc_status status = qc__poll(ctx);
+    if (status == QC_OK) status = qc__map_stiffness_solve(ctx, p->stiffness, 1, x);
     if (status == QC_OK) qc__periods_spread(p, x, F);
     qc__free(x);
     return status;

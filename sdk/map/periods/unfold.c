@@ -233,6 +233,8 @@ static qc_status prepare_look(unfolder *u) {
     if (!r->value || !r->turn || !r->offset || !u->rotation || !u->cross || !u->guide_angle ||
         !u->hat || !u->f || !u->area || !u->pull)
         return QC_ERR_NOMEM;
+    qc_status status = qc__poll(u->ctx);
+    if (status != QC_OK) return status;
     for (int64_t c = 0; c < n_corners; c++) r->turn[c] = s->wedge_turn[s->corner_wedge[c]];
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         const int32_t k = s->edge_segment[e];
@@ -245,10 +247,12 @@ static qc_status prepare_look(unfolder *u) {
         u->pull[t] = first_pull;
         qc__target_hats(u->z + 3 * t, qc__thick_targets, u->hat + 3 * t, u->area + t);
     }
+    status = qc__poll(u->ctx);
+    if (status != QC_OK) return status;
     u->guide = (qc__guide){r, u->rotation, u->cross, u->z};
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         u->guide_angle[v] = qc__guide_angle(&u->guide, v);
-    return QC_OK;
+    return qc__poll(u->ctx);
 }
 
 static void release(unfolder *u) {
@@ -281,6 +285,7 @@ qc_status qc__unfold(qc_ctx *ctx, const qc__periods *periods, const double *P,
     if (status == QC_OK) {
         memcpy(u.f, f, size);
         before = look(&u);
+        status = qc__poll(ctx);
     }
     best = before;
     if (status == QC_OK && before.folded + before.wrong > 0) {

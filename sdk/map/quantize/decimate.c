@@ -154,6 +154,7 @@ qc_status qc__coarse_map_create(qc_ctx *ctx, const qc__exact_map *map, qc__coars
     if (!result) return QC_ERR_NOMEM;
     result->mesh = map->mesh;
     qc_status status = qc__triangulation_create(ctx, map, &T);
+    if (status == QC_OK) status = qc__poll(ctx);
     if (status == QC_OK) status = decimate(T, map->point);
     if (status == QC_OK) status = publish(T, map->bits + 2, result);
     qc__triangulation_free(T);

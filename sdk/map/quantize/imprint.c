@@ -35,6 +35,8 @@ static qc_status prepare(imprinter *q) {
     qc_status status = qc_tangent_edges(q->ctx, m, q->edge);
     if (status != QC_OK) return status;
     qc__find_crossings(q);
+    status = qc__poll(q->ctx);
+    if (status != QC_OK) return status;
     const int32_t n = q->edge_start[m->n_edges];
     q->share = QC__NEW(q->ctx, double, n);
     q->place = QC__NEW(q->ctx, double, 2 * (int64_t)n);
@@ -45,7 +47,9 @@ static qc_status prepare(imprinter *q) {
     q->uv = QC__NEW(q->ctx, double, 6 * (int64_t)n_faces);
     q->weight = QC__NEW(q->ctx, double, 9 * (int64_t)n_faces);
     if (!q->uv || !q->weight) return QC_ERR_NOMEM;
-    status = qc__refiner_create(q->ctx, m, q->n_vertices, n_faces, &q->refiner);
+    status = qc__poll(q->ctx);
+    if (status == QC_OK)
+        status = qc__refiner_create(q->ctx, m, q->n_vertices, n_faces, &q->refiner);
     if (status == QC_OK) place_vertices(q);
     return status;
 }

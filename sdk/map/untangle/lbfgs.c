@@ -78,18 +78,20 @@ qc_status qc__lbfgs(qc_ctx *ctx, const qc__lbfgs_problem *problem, int32_t max_i
             break;
         }
         status = direction(ctx, problem, &h, g, p);
+        if (status == QC_OK) status = qc__poll(ctx);
         if (status != QC_OK) break;
         const double slope = dot(n, g, p);
         if (!(slope < 0)) break;
         double t = problem->limit ? fmin(1.0, problem->limit(problem->user, x, p)) : 1.0;
         double e_new = INFINITY;
         int32_t tries = 0;
-        for (; tries < BACKTRACKS; tries++, t *= 0.5) {
+        for (; tries < BACKTRACKS && status == QC_OK; tries++, t *= 0.5) {
             for (int64_t i = 0; i < n; i++) x_new[i] = x[i] + t * p[i];
             e_new = problem->evaluate(problem->user, x_new, g_new);
             if (e_new <= e + 1e-4 * t * slope) break;
+            status = qc__poll(ctx);
         }
-        if (tries == BACKTRACKS) break;
+        if (tries == BACKTRACKS || status != QC_OK) break;
         remember(&h, n, x, x_new, g, g_new);
         memcpy(x, x_new, sizeof *x * (size_t)n);
         double *swap = g;

@@ -82,11 +82,14 @@ static qc_status prepare(untangler *u, const qc_corner_map *map, const qc_grid_m
     u->unit = unit_length(map);
     qc_status status = qc__reduced_map_create(u->ctx, grid, map->uv, true, &u->target);
     if (status == QC_OK) status = qc__reduced_map_create(u->ctx, grid, map->uv, true, &u->map);
+    if (status == QC_OK) status = qc__poll(u->ctx);
     if (status == QC_OK) status = allocate(u);
     if (status == QC_OK)
         status =
             qc__untangle_targets(u->ctx, map->mesh, u->unit, qc__thick_targets, u->hat, u->area);
+    if (status == QC_OK) status = qc__poll(u->ctx);
     if (status == QC_OK) status = make_guide(u, map);
+    if (status == QC_OK) status = qc__poll(u->ctx);
     if (status == QC_OK) pin_full_turns(u);
     return status;
 }

@@ -60,6 +60,7 @@ static void fractions_never_fall_within_the_outermost_range(void **state) {
             const qc__range inner = qc__range_begin(ctx, NULL, 0.25, 0.75);
             assert_true(qc__progress(ctx, 0.0) && w.fraction == (trial ? 0.75 : 0.25));
             assert_true(qc__progress(ctx, 1.0) && w.fraction == 0.75);
+            assert_true(qc__poll(ctx) == QC_OK && w.fraction == 0.75);
             qc__range_end(ctx, inner);
         }
         qc__range_end(ctx, outer);
@@ -75,6 +76,7 @@ static void false_cancels(void **state) {
     w.stop = true;
     assert_false(qc__progress(ctx, 0.5));
     assert_true(qc__cancelled(ctx));
+    assert_int_equal(qc__poll(ctx), QC_ERR_CANCELLED);
     assert_int_equal(qc_ctx_error(ctx)->status, QC_ERR_CANCELLED);
     w.stop = false;
     assert_true(qc__progress(ctx, 0.0)); /* the next run starts afresh */
