@@ -6,6 +6,7 @@
  * vertices. */
 #include "crowd.h"
 #include "region.h"
+#include "sdk/mesh/names.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -189,12 +190,14 @@ static qc_status try_region(qc_ctx *ctx, separator *s, int way, uint8_t *trusted
 }
 
 static int32_t report(qc_ctx *ctx, const separator *s) {
-    char names[NAMED * 16] = "";
+    char names[NAMED * (QC__ELEMENT_NAME + 2)] = "", name[QC__ELEMENT_NAME];
     int32_t left = 0;
     for (int32_t p = 0; p < s->mesh->n_vertices; p++) {
         if (!qc__index_excess(s->index4[p])) continue;
         size_t used = strlen(names);
-        if (left < NAMED) snprintf(names + used, sizeof names - used, left ? ", %d" : "%d", (int)p);
+        if (left < NAMED)
+            snprintf(names + used, sizeof names - used, "%s%s", left ? ", " : "",
+                     qc__vertex_name(s->mesh, p, name));
         left++;
     }
     if (left > 0)

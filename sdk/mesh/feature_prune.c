@@ -2,6 +2,7 @@
  * quad, short ones, the weaker ones of sharp sectors (docs/theory/features.md, K.0). */
 #include "sdk/mesh/crease_scale.h"
 #include "sdk/mesh/feature_chains.h"
+#include "sdk/mesh/names.h"
 
 #include <string.h>
 
@@ -43,10 +44,6 @@ static void mark_short(network *w, double least) {
         c->drop = c->strength < 0.999 * QC__STRENGTH_DRAWN &&
                   ((round && c->length < 2 * least) || (loose && c->length < least));
     }
-}
-
-static int32_t input_number(const qc_mesh *mesh, int32_t v) {
-    return mesh->source_vertex ? mesh->source_vertex[v] : v;
 }
 
 /* The edges before and after the sector from corner c on, and its angle; false when c begins none.
@@ -100,12 +97,14 @@ static void mark_sharp(qc_ctx *ctx, network *w, double sharp) {
         if (i < 0 || w->chain[i].won || w->chain[i].drop) continue;
         w->chain[i].drop = true;
         if (w->named++ >= NAMED) continue;
+        char name[3][QC__ELEMENT_NAME];
         qc__log(ctx, QC_LOG_WARNING,
-                "feature from vertex %d to %d, of length %.3g, dropped: at vertex %d it meets "
-                "another one in %.0f degrees, which leaves no room for quads",
-                (int)input_number(w->mesh, w->chain[i].end[0]),
-                (int)input_number(w->mesh, w->chain[i].end[1]), w->chain[i].length,
-                (int)input_number(w->mesh, w->mesh->face_vertex[c]), angle * 57.29577951308232);
+                "feature from %s to %s, of length %.3g, dropped: at %s it meets another one in "
+                "%.0f degrees, which leaves no room for quads",
+                qc__vertex_name(w->mesh, w->chain[i].end[0], name[0]),
+                qc__vertex_name(w->mesh, w->chain[i].end[1], name[1]), w->chain[i].length,
+                qc__vertex_name(w->mesh, w->mesh->face_vertex[c], name[2]),
+                angle * 57.29577951308232);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sdk/remesh/internal.h"
+#include "sdk/mesh/names.h"
 
 enum { NAMED = 8 };
 
@@ -81,15 +82,14 @@ static const char *name_of(const qc_feature_chain *chain) {
 static void give_up(qc_ctx *ctx, qc__concessions *c, int32_t i, double quad, const char *reason) {
     const qc_feature_chain *chain = &c->chain[i];
     const qc_mesh *mesh = c->features->mesh;
-    int32_t end[2] = {chain->end[0], chain->end[1]};
-    for (int k = 0; k < 2; k++)
-        if (mesh->source_vertex) end[k] = mesh->source_vertex[end[k]];
+    char from[QC__ELEMENT_NAME], to[QC__ELEMENT_NAME];
     c->gone[i] = 1;
     c->n_gone++;
     if (c->named++ >= NAMED) return;
     qc__log(ctx, QC_LOG_WARNING,
-            "%s from vertex %d to %d, %.1f quads long, %.0f degrees, is no edge of the quads: %s",
-            name_of(chain), (int)end[0], (int)end[1], chain->length / quad,
+            "%s from %s to %s, %.1f quads long, %.0f degrees, is no edge of the quads: %s",
+            name_of(chain), qc__vertex_name(mesh, chain->end[0], from),
+            qc__vertex_name(mesh, chain->end[1], to), chain->length / quad,
             chain->angle * 57.29577951308232, reason);
 }
 

@@ -48,7 +48,7 @@ static void strokes_without_room_are_named(void **state) {
     check_features("disk");
     golden_equal("disk", "edges of features", run_seen.last->n_feature_edges, SPOKES + 7 + 7);
     golden_equal("disk", "warnings", run_seen.n_warnings, 1);
-    snprintf(text, sizeof text, "feature from vertex 0 to %d, of length 5, dropped",
+    snprintf(text, sizeof text, "feature from vertex 0 to vertex %d, of length 5, dropped",
              (int)on_spoke(1, 5));
     assert_non_null(strstr(run_seen.warning[0], text));
     assert_non_null(strstr(run_seen.warning[0], "at vertex 0 it meets another one in 5 degrees"));
@@ -64,8 +64,8 @@ static int is_named(const qc_mesh *mesh, const qc_feature_chain *chain) {
         int a, b;
         double length, angle;
         if (sscanf(run_seen.warning[i],
-                   "crease from vertex %d to %d, %lf quads long, %lf degrees, is no edge", &a, &b,
-                   &length, &angle) == 4 &&
+                   "crease from vertex %d to vertex %d, %lf quads long, %lf degrees, is no edge",
+                   &a, &b, &length, &angle) == 4 &&
             a == from && b == to && length > 0 &&
             fabs(angle - chain->angle * 57.29577951308232) < 0.6)
             return 1;

@@ -1,6 +1,7 @@
 /* Quad extraction from an exact integer-grid map (stages/extract/extract.md, after Ebke, Bommes,
  * Campen, Kobbelt, "QEx: robust quad mesh extraction", 2013) with its acceptance test. */
 #include "sdk/map/extract/internal.h"
+#include "sdk/mesh/names.h"
 
 static qc_status check_map(qc_ctx *ctx, const qc_grid_map *g) {
     if (!g) return qc__fail(ctx, QC_ERR_ARGUMENT, -1, "grid is NULL");
@@ -11,8 +12,8 @@ static qc_status check_map(qc_ctx *ctx, const qc_grid_map *g) {
     for (int32_t t = g->first_flipped; t < g->mesh->n_faces && named < 4; t++) {
         const int64_t area = qc_grid_map_orientation(g, t);
         if (area > 0 || (g->n_flipped > 0 && area == 0)) continue;
-        used +=
-            snprintf(list + used, sizeof list - (size_t)used, "%s%d", named++ ? ", " : "", (int)t);
+        used += snprintf(list + used, sizeof list - (size_t)used, "%s%d", named++ ? ", " : "",
+                         (int)qc__face_number(g->mesh, t));
     }
     return qc__fail(
         ctx, QC_ERR_FAILED, g->first_flipped,
@@ -39,13 +40,13 @@ static qc_status accept(qc_ctx *ctx, const qc_mesh *m, const qc_polygon_mesh *q)
     if (t.non_quads || t.non_manifold_edges || t.non_manifold_vertices || t.inconsistent_edges ||
         t.duplicate_faces || t.degenerate_faces || t.unreferenced_vertices) {
         const int32_t face = place_of(q, &t);
-        return qc__fail(ctx, QC_ERR_FAILED, face,
-                        "the grid is too coarse near face %d: %d edges and %d vertices of the quad "
-                        "mesh are not manifold, %d quads coincide, %d are degenerate; try a finer "
-                        "density",
-                        (int)face, (int)(t.non_manifold_edges + t.inconsistent_edges),
-                        (int)t.non_manifold_vertices, (int)t.duplicate_faces,
-                        (int)t.degenerate_faces);
+        return qc__fail(
+            ctx, QC_ERR_FAILED, face,
+            "the grid is too coarse near face %d: %d edges and %d vertices of the quad "
+            "mesh are not manifold, %d quads coincide, %d are degenerate; try a finer "
+            "density",
+            (int)qc__face_number(m, face), (int)(t.non_manifold_edges + t.inconsistent_edges),
+            (int)t.non_manifold_vertices, (int)t.duplicate_faces, (int)t.degenerate_faces);
     }
     const int32_t loops = m->n_boundary_loops - m->n_poles, euler = m->euler + m->n_poles;
     if (t.components == m->n_components && t.boundary_loops == loops && t.euler == euler)

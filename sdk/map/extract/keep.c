@@ -3,6 +3,7 @@
  * differ more cells along the loops concerned are tried. */
 #include "sdk/map/extract/internal.h"
 #include "sdk/mesh/internal.h"
+#include "sdk/mesh/names.h"
 
 enum { ATTEMPTS = 6 }; /* cells covered by half, the same with bridges, then 0.4 down to 0.1 */
 
@@ -131,29 +132,31 @@ static int32_t first_face(const qc_mesh *m, int32_t i) {
 
 static qc_status refuse(keeper *k, int32_t i) {
     const component *c = &k->component[i];
-    const int32_t face = first_face(k->mesh, i);
+    char name[2][QC__ELEMENT_NAME];
+    const int32_t face = first_face(k->mesh, i), number = qc__face_number(k->mesh, face);
     if (c->best < 0)
         return qc__fail(k->ctx, QC_ERR_FAILED, face,
                         "component %d (face %d ...) is smaller than a quad; try a finer density",
-                        (int)i, (int)face);
+                        (int)i, (int)number);
     if (c->dropped > c->size / 9)
         return qc__fail(k->ctx, QC_ERR_FAILED, face,
                         "component %d (face %d ...) has a neck narrower than a quad: it would cut "
                         "off %d quads of %d; try a finer density",
-                        (int)i, (int)face, (int)c->dropped, (int)(c->dropped + c->size));
+                        (int)i, (int)number, (int)c->dropped, (int)(c->dropped + c->size));
     const qc_status status = qc__loops_gaps(k->ctx, k->ports, k->cells, &k->loops, k->gap);
     if (status != QC_OK) return status;
     for (int32_t j = 0; j < k->loops.n; j++)
         if (k->gap[j] != j && loop_component(k, j) == i)
             return qc__fail(k->ctx, QC_ERR_FAILED, k->loops.start[k->gap[j]],
-                            "the boundary loops through vertices %d and %d come closer than a quad "
+                            "the boundary loops through %s and %s come closer than a quad "
                             "and would merge; try a finer density",
-                            (int)k->loops.start[k->gap[j]], (int)k->loops.start[j]);
+                            qc__vertex_name(k->mesh, k->loops.start[k->gap[j]], name[0]),
+                            qc__vertex_name(k->mesh, k->loops.start[j], name[1]));
     return qc__fail(k->ctx, QC_ERR_FAILED, face,
                     "the quads of component %d (face %d ...) differ from it by %d in the Euler "
                     "characteristic and %d boundary loops: a neck or handle is narrower than a "
                     "quad; try a finer density",
-                    (int)i, (int)face, (int)c->euler, (int)c->loops);
+                    (int)i, (int)number, (int)c->euler, (int)c->loops);
 }
 
 static qc_status verify(keeper *k) {

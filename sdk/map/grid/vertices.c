@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "sdk/map/grid/internal.h"
+#include "sdk/mesh/names.h"
 
 /* z -> i^r z + t with integer t (parameter units). */
 typedef struct transform {
@@ -150,15 +151,15 @@ static qc_status pin_full_turns(qc__grid_build *b) {
         if (n < 0 || n == regular) continue;
         const qc__point p = qc__grid_corner(&view, m->vertex_corner[v]);
         const double u = round((double)p.u / unit), w = round((double)p.v / unit);
+        char name[QC__ELEMENT_NAME];
         const double off = fmax(fabs((double)p.u / unit - u), fabs((double)p.v / unit - w));
         if (off > b->tolerance && folded) continue;
         if (off > b->tolerance)
-            return qc__fail(
-                b->ctx, QC_ERR_FAILED, v,
-                "the map makes %d quarter turns around vertex %d, which is %.3g parameter "
-                "units off the lattice: a cone there or next to it is folded in; try a "
-                "finer density or other integers",
-                n - (regular == 3), (int)v, off);
+            return qc__fail(b->ctx, QC_ERR_FAILED, v,
+                            "the map makes %d quarter turns around %s, which is %.3g parameter "
+                            "units off the lattice: a cone there or next to it is folded in; try a "
+                            "finer density or other integers",
+                            n - (regular == 3), qc__vertex_name(m, v, name), off);
         const qc_status status =
             spread(b, v, (qc__point){(int64_t)(u * unit), (int64_t)(w * unit)});
         if (status != QC_OK) return status;

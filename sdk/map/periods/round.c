@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "sdk/map/periods/room.h"
+#include "sdk/mesh/names.h"
 
 enum { LARGEST_PERIOD_MATRIX = 4000 }; /* variables; beyond it periods are rounded directly */
 
@@ -77,11 +78,12 @@ static qc_status refuse_impossible(const qc__rounding *r) {
         if (matching->index4[v] == 1 || matching->index4[v] == -1)
             cone[matching->index4[v] < 0] = v;
     if (cone[0] < 0 || cone[1] < 0) return QC_OK;
-    return qc__fail(
-        r->ctx, QC_ERR_FAILED, cone[0],
-        "no quad mesh of a torus has exactly one vertex of valence 3 (here %d) and one of "
-        "valence 5 (here %d); smooth the field or give it more singularities",
-        (int)cone[0], (int)cone[1]);
+    char name[2][QC__ELEMENT_NAME];
+    return qc__fail(r->ctx, QC_ERR_FAILED, cone[0],
+                    "no quad mesh of a torus has exactly one vertex of valence 3 (here %s) and one "
+                    "of valence 5 (here %s); smooth the field or give it more singularities",
+                    qc__vertex_name(mesh, cone[0], name[0]),
+                    qc__vertex_name(mesh, cone[1], name[1]));
 }
 
 static void release(qc__rounding *r) {

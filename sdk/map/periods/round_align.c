@@ -6,6 +6,7 @@
 #include "sdk/map/periods/align.h"
 #include "sdk/map/periods/frame_form.h"
 #include "sdk/map/periods/unfold.h"
+#include "sdk/mesh/names.h"
 
 enum { REACH = 3 /* target edge lengths within which points and features are kept apart */ };
 
@@ -39,10 +40,11 @@ static qc_status unfold(qc__rounding *r) {
     }
     const bool clean = done.folded + done.wrong == 0;
     if (status != QC_OK || clean || r->seams->n_levels == 0) return status;
+    char name[QC__ELEMENT_NAME];
     return qc__fail(r->ctx, QC_ERR_FAILED, done.where,
                     "the map folds over at %d faces and winds wrong at %d places before integers "
-                    "are chosen (first: vertex %d); hard features leave no room there",
-                    (int)done.folded, (int)done.wrong, (int)done.where);
+                    "are chosen (first: %s); hard features leave no room there",
+                    (int)done.folded, (int)done.wrong, qc__vertex_name(r->mesh, done.where, name));
 }
 
 qc_status qc__round_align(qc__rounding *r) {

@@ -1,6 +1,7 @@
 /* Meeting a number of quads: the map is scaled and rounded again until its area meets it. Periods
  * scale with the map, the period matrix does not change (docs/theory/rounding.md, R.8 and R.9). */
 #include "sdk/map/periods/round.h"
+#include "sdk/mesh/names.h"
 #include <math.h>
 
 enum {
@@ -80,10 +81,11 @@ static qc_status refuse_collisions(const qc__rounding *r) {
     for (int32_t j = 0; j < r->seams->n_free; j++) r->target[j] = r->best_scale * r->period[j];
     const int32_t pair = qc__first_collision(r->separation, r->target, r->best_rounded);
     const int32_t v = pair < 0 ? -1 : r->separation->vertex[2 * pair];
+    char name[QC__ELEMENT_NAME];
     return qc__fail(r->ctx, QC_ERR_FAILED, v,
                     "%d pairs of singularities or hard features are too close for this density "
-                    "(first: vertex %d); try a finer one or fewer features",
-                    (int)r->best_collisions, (int)v);
+                    "(first: %s); try a finer one or fewer features",
+                    (int)r->best_collisions, qc__vertex_name(r->mesh, v, name));
 }
 
 /* Where the quads asked for are too large for the distances between singularities and features, no

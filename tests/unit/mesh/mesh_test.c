@@ -1,5 +1,6 @@
 /* Connectivity of triangle meshes: conventions, counts, errors. */
 #include "unit/mesh/fixtures.h"
+#include "sdk/mesh/names.h"
 
 static void check_conventions(const qc_mesh *m) {
     int32_t boundary = 0;
@@ -137,11 +138,33 @@ static void test_errors(void **state) {
     assert_int_equal(qc_ctx_error(*state)->where, 1);
 }
 
+/* Messages name what the input numbers, and the place of what it has not. */
+static void test_names(void **state) {
+    static const double position[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0.5, 0.25, 2};
+    static const int32_t face[] = {0, 1, 2, 0, 2, 3};
+    static const int32_t source_vertex[] = {40, 7, 12, -1}, source_face[] = {9, 3};
+    char text[QC__ELEMENT_NAME];
+    qc_mesh *mesh = NULL, *plain = NULL;
+    assert_int_equal(
+        qc_mesh_create_from(*state, 4, position, 2, face, source_vertex, source_face, &mesh),
+        QC_OK);
+    assert_int_equal(qc_mesh_create(*state, 4, position, 2, face, &plain), QC_OK);
+    assert_string_equal(qc__vertex_name(mesh, 0, text), "vertex 40");
+    assert_string_equal(qc__vertex_name(mesh, 3, text), "the point (0.5, 0.25, 2)");
+    assert_string_equal(qc__vertex_name(mesh, -1, text), "an unknown vertex");
+    assert_string_equal(qc__vertex_name(plain, 3, text), "vertex 3");
+    assert_int_equal(qc__face_number(mesh, 1), 3);
+    assert_int_equal(qc__face_number(mesh, -1), -1);
+    assert_int_equal(qc__face_number(plain, 1), 1);
+    qc_object_release(mesh);
+    qc_object_release(plain);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_topology),       cmocka_unit_test(test_extent),
         cmocka_unit_test(test_boundary_loops), cmocka_unit_test(test_component),
-        cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_errors),         cmocka_unit_test(test_names),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
