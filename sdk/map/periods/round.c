@@ -86,6 +86,19 @@ static qc_status refuse_impossible(const qc__rounding *r) {
                     qc__vertex_name(mesh, cone[1], name[1]));
 }
 
+/* At an inner vertex of index 3/4 one quad meets, two of whose sides are one edge. */
+static qc_status refuse_glued_quads(const qc__rounding *r) {
+    const int32_t *index4 = r->seamless->matching->index4;
+    if (r->options.lattice != QC_LATTICE_QUADS) return QC_OK;
+    for (int32_t v = 0; v < r->mesh->n_vertices; v++)
+        if (index4[v] >= 3 && !qc_vertex_on_boundary(r->mesh, v))
+            return qc__fail(r->ctx, QC_ERR_FAILED, v,
+                            "vertex %d has index %d/4, where a quad would be glued to itself; "
+                            "smooth the field or drop features near it",
+                            (int)v, (int)index4[v]);
+    return QC_OK;
+}
+
 static void release(qc__rounding *r) {
     qc__imprint_free(&r->imprint);
     qc__separation_free(r->separation);
@@ -122,7 +135,8 @@ qc_status qc_map_round(qc_ctx *ctx, const qc_seamless_map *seamless,
                options->struct_size < sizeof r.options ? options->struct_size : sizeof r.options);
     if (!(r.options.tolerance > 0)) r.options.tolerance = 0.02;
     if (!(r.options.refine > 0)) r.options.refine = 1;
-    qc_status status = find_real_map(&r);
+    qc_status status = refuse_glued_quads(&r);
+    if (status == QC_OK) status = find_real_map(&r);
     if (status == QC_OK) status = qc__round_meet(&r);
     if (status == QC_OK) status = qc__round_publish(&r, out);
     release(&r);

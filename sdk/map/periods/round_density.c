@@ -8,11 +8,12 @@ enum {
     REFINEMENTS = 6,
     ALIGNED_REFINEMENTS = 2, /* with hard features, of which some had better go than that */
     DENSITY_ROUNDS = 24,
-    NEWTON_ROUNDS = 5,   /* of these; then scales about the best are scanned */
-    WINDING_ROUNDS = 13, /* in so many, cones which wind wrong are a reason to go on, ... */
-    FEW_COLLISIONS = 3,  /* ... and pairs which collide where they are no more than these */
-    WRONG_CONES = 20,    /* so many, or ... */
-    WRONG_SHARE = 3      /* ... one in so many, can be unwound */
+    NEWTON_ROUNDS = 5,    /* of these; then scales about the best are scanned */
+    WINDING_ROUNDS = 13,  /* in so many, cones which wind wrong are a reason to go on, ... */
+    FEW_COLLISIONS = 3,   /* ... and pairs which collide where they are no more than these */
+    MANY_COLLISIONS = 60, /* with hard features so many stay at any scale near this one */
+    WRONG_CONES = 20,     /* so many, or ... */
+    WRONG_SHARE = 3       /* ... one in so many, can be unwound */
 };
 
 static double scale_factor(double wanted, double quads) {
@@ -39,6 +40,7 @@ static qc_status meet_density(qc__rounding *r) {
         if (qc__out_of_time(r->ctx) && r->best_miss <= qc__round_promised + qc__round_slack) break;
         const bool sound =
             r->best_collisions == 0 && (r->best_wrong == 0 || i + 1 >= WINDING_ROUNDS);
+        if (r->seams->n_levels > 0 && r->best_collisions > MANY_COLLISIONS && i > 0) break;
         if (may_quantize &&
             (r->best_collisions > FEW_COLLISIONS || (i + 1 >= NEWTON_ROUNDS && !sound)))
             break;
@@ -106,12 +108,14 @@ qc_status qc__round_meet(qc__rounding *r) {
     }
     const int32_t pairs = r->best_collisions, wrong = r->best_wrong;
     if (status != QC_OK || r->options.trial || !is_hopeless(r)) return status;
-    const int32_t most = r->seams->n_levels > 0 ? ALIGNED_REFINEMENTS : REFINEMENTS;
+    const int32_t most = r->seams->n_levels == 0   ? REFINEMENTS
+                         : pairs > MANY_COLLISIONS ? 0
+                                                   : ALIGNED_REFINEMENTS;
     for (int32_t k = 1; k <= most && status == QC_OK && is_hopeless(r); k++)
         status = meet_refined(r, asked * pow(2, 0.5 * k));
     if (status != QC_OK) return status;
     const bool helped = !is_hopeless(r) || r->best_collisions < pairs || 2 * r->best_wrong < wrong;
-    if (!helped) status = meet_refined(r, asked);
+    if (!helped && most > 0) status = meet_refined(r, asked);
     if (status == QC_OK) status = refuse_collisions(r);
     if (status == QC_OK)
         qc__log(r->ctx, QC_LOG_WARNING,

@@ -12,7 +12,6 @@ typedef struct search {
     const qc__separation *s;
     int32_t n; /* variables */
     const double *P;
-    bool thorough;                 /* two steps at a time as well */
     double *z, *slope;             /* slope = P (z - t) */
     double _Complex *now, *wanted; /* forms of the pairs for z and for t */
     int64_t *pair_start;           /* pairs and coefficients by variable */
@@ -27,7 +26,10 @@ typedef struct search {
     int32_t *near;
 } search;
 
-enum { UNKNOWN = INT32_MIN };
+enum {
+    UNKNOWN = INT32_MIN,
+    MANY = 40 /* pairs, more than two steps at a time could part in good time */
+};
 
 /* Steps by number: z_variable - 1, z_variable + 1. */
 static int64_t step_number(step a) {
@@ -135,8 +137,9 @@ static int32_t count_collisions(const search *q) {
     return n;
 }
 
-/* Every accepted change lowers the number of collisions, so this ends. */
-static qc_status remove_collisions(qc_ctx *ctx, search *q) {
+/* two: by two steps where one does not help. Every accepted change lowers the number of collisions,
+ * so this ends. */
+static qc_status remove_collisions(qc_ctx *ctx, search *q, bool two) {
     for (bool changed = true; changed;) {
         changed = false;
         for (int32_t p = 0; p < q->s->n; p++) {
@@ -146,7 +149,7 @@ static qc_status remove_collisions(qc_ctx *ctx, search *q) {
             if (best_step(q, p, &a)) {
                 apply(q, a);
                 changed = true;
-            } else if (q->thorough && best_two_steps(q, p, &a, &b)) {
+            } else if (two && best_two_steps(q, p, &a, &b)) {
                 apply(q, a);
                 apply(q, b);
                 changed = true;
@@ -235,14 +238,15 @@ static qc_status prepare(qc_ctx *ctx, search *q, const double *t) {
 qc_status qc__separate(qc_ctx *ctx, const qc__separation *separation, int32_t n_free,
                        const double *P, const double *t, bool thorough, double *z, double *energy,
                        int32_t *left) {
-    search q = {
-        .s = separation, .n = n_free, .P = P, .thorough = thorough, .z = z, .energy = *energy};
+    search q = {.s = separation, .n = n_free, .P = P, .z = z, .energy = *energy};
     qc_status status = prepare(ctx, &q, t);
     if (status == QC_OK && count_collisions(&q) > 0) {
         status = find_near(ctx, &q);
-        if (status == QC_OK) status = remove_collisions(ctx, &q);
+        if (status == QC_OK) status = remove_collisions(ctx, &q, false);
+        const bool two = thorough && count_collisions(&q) <= MANY;
+        if (status == QC_OK && two) status = remove_collisions(ctx, &q, true);
         weigh(&q, 2); /* what cannot be parted is better past each other than in one place */
-        if (status == QC_OK) status = remove_collisions(ctx, &q);
+        if (status == QC_OK) status = remove_collisions(ctx, &q, two);
         if (status == QC_OK) status = descend(ctx, &q);
     }
     if (status == QC_OK) {
