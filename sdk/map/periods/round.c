@@ -89,7 +89,7 @@ static qc_status refuse_impossible(const qc__rounding *r) {
 /* At an inner vertex of index 3/4 one quad meets, two of whose sides are one edge. */
 static qc_status refuse_glued_quads(const qc__rounding *r) {
     const int32_t *index4 = r->seamless->matching->index4;
-    if (r->options.lattice != QC_LATTICE_QUADS) return QC_OK;
+    if (r->options.lattice != QC_LATTICE_QUADS || r->options.trial) return QC_OK;
     for (int32_t v = 0; v < r->mesh->n_vertices; v++)
         if (index4[v] >= 3 && !qc_vertex_on_boundary(r->mesh, v))
             return qc__fail(r->ctx, QC_ERR_FAILED, v,
