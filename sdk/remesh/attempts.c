@@ -26,7 +26,8 @@ static const rung ladder[] = {
     {0, 0, ALL},        {1, 0, ALL},      {0, 1, ALL},          {0, 0, AS_SMOOTHED},
     {0, 0, LESS_ONE},   {0, 0, LESS_ONE}, {0, 0, LESS_QUARTER}, {0, 0, LESS_HALF},
     {0, 0, BOUNDARIES}, {0, 0, GUIDES},   {1, 0, GUIDES},       {0, 1, GUIDES},
-    {0, 2, GUIDES},     {0, 4, GUIDES},   {0, 6, GUIDES},
+    {0, 2, GUIDES},     {0, 4, GUIDES},   {0, 6, GUIDES},       {0, 8, GUIDES},
+    {0, 10, GUIDES},
 };
 enum { RUNGS = (int)(sizeof ladder / sizeof *ladder) };
 
