@@ -8,7 +8,7 @@
 /* Vertices visited around a branch point and edges of a path, at most. */
 enum { BALL = 3000, PATH_MAX_EDGES = 40 };
 /* A pair which cost so many times its price is not measured again. */
-static const double DEAR = 2;
+static const double DEAR = 1.25;
 
 typedef struct pair {
     int32_t p, q; /* the index of p is moved to q */

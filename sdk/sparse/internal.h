@@ -197,6 +197,8 @@ int32_t qc__front_factor_real(qc_ctx *ctx, const qc__kernels *kernels, const qc_
 /* factor/blas_threads.c: between begin and end OpenBLAS computes in the calling thread. Any thread;
  * pairs may overlap, the host's setting comes back with the last end. */
 void qc__blas_begin(void);
+/* NOMEM where the first call of OpenBLAS would not find the memory it needs and hang. */
+qc_status qc__blas_reserve(qc_ctx *ctx);
 void qc__blas_end(void);
 
 /* A borrowed matrix of either type. */

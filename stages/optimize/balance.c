@@ -34,15 +34,18 @@ static const qc_param table[] = {
 
 /* Prices rise by this factor as long as the sum falls. */
 static const double RISE = 1.6;
-enum { PRICES = 20 };
+enum {
+    PRICES = 20,
+    FEW = 64 /* a round which cancels fewer than one of so many points is the last for a price */
+};
 
-/* Pairs to cancel before the others are moved: an eighth of all points, or half of what is too much
- * when a count is wanted. */
+/* Pairs to cancel before the others are moved: a quarter of as many as all points, or half of what
+ * is too much when a count is wanted. */
 static int64_t some_pairs(const params *p, const qc_distortion *d) {
     qc_distortion_state s;
     qc_distortion_get_state(d, &s);
     if (p->count > 0) return s.branch_points > p->count ? (s.branch_points - p->count + 3) / 4 : 0;
-    return s.branch_points / 8 + 1;
+    return s.branch_points / 4 + 1;
 }
 
 /* Cancels pairs which cost E_D less than the price and moves the others, until nothing is
@@ -66,11 +69,13 @@ static qc_status balance(const qc_run *r, const params *p, double price, qc_dist
         int32_t now = 0;
         cancel.pairs = some_pairs(p, d);
         if (cancel.pairs == 0) return QC_OK;
+        qc_distortion_get_state(d, &s);
         qc_status status = qc_distortion_cancel(r->ctx, d, &cancel, &now);
         *cancelled += now;
         if (status || (now == 0 && i > 0)) return status;
         status = qc_distortion_reduce(r->ctx, d, &move);
-        if (status) return status;
+        const bool few = p->count == 0 && 2 * (int64_t)FEW * now < s.branch_points;
+        if (status || few) return status;
     }
     return QC_OK;
 }

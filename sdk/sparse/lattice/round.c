@@ -123,6 +123,7 @@ qc_status qc_lattice_round(qc_ctx *ctx, int32_t n, const double *P, const double
         memcpy(&options, given,
                given->struct_size < sizeof options ? given->struct_size : sizeof options);
     qc_status status = check(ctx, n, P, t, &options, z);
+    if (status == QC_OK && n > 0) status = qc__blas_reserve(ctx);
     if (status != QC_OK) return status;
     double *C = QC__NEW(ctx, double, (size_t)n *(size_t)n);
     double *vectors = QC__NEW(ctx, double, 2 * (size_t)n);
