@@ -2,7 +2,7 @@
  * what a user set is as before afterwards. */
 #include "golden.h"
 
-enum { MOST = 16 };
+enum { MOST = 24 };
 static int calls, refusals, kept[MOST]; /* feature edges which are hard, by call */
 static int optimised;                   /* times */
 
