@@ -81,7 +81,7 @@ typedef struct qc__relaxation {
     const qc_mesh *mesh;
     const qc_polygon_mesh *quads; /* of which only the faces are read */
     double quality, uniformity;
-    bool rectangles;
+    bool rectangles, angles;
     const qc_closest_point *closest;
     qc_closest_tree *tree;
     qc__neighbours around;
@@ -110,8 +110,10 @@ double qc__quad_gap(const qc__relaxation *r, int32_t f);
 /* Mends the quads which are worse than 0.3 quality, where distances stay within the limit; nearest:
  * of qc__measure_gaps. */
 qc_status qc__quads_untangle(qc_ctx *ctx, double limit, const int32_t *nearest, qc__relaxation *r);
-/* Moves n vertices to better places in turn; step: n lengths, for its use. */
-void qc__quads_descend(qc__relaxation *r, int32_t n, const int32_t *vertex, double *step);
+/* Moves n vertices to better places in turn; angles: quads may be long; step: n lengths, for its
+ * use. */
+void qc__quads_descend(qc__relaxation *r, bool angles, int32_t n, const int32_t *vertex,
+                       double *step);
 
 /* r->size: mean edge lengths, averaged over neighbours a few times; r->ratio, with r->rectangles,
  * likewise. */
@@ -131,6 +133,8 @@ static inline double qc__quad_quality(const qc__relaxation *r, int32_t f) {
 double qc__ring_quality(const qc__relaxation *r, int32_t v, const double x[3]);
 /* Sum over the quads at v of (1 - scaled Jacobian)^8, likewise. */
 double qc__ring_badness(const qc__relaxation *r, int32_t v, const double x[3]);
+/* Whether quad f would face away from the surface, with its corner k at x. */
+bool qc__quad_turned(const qc__relaxation *r, int32_t f, int k, const double *x);
 /* Whether a quad at v would face away from the surface, and more than now, were v at x. */
 bool qc__ring_turns(const qc__relaxation *r, int32_t v, const double x[3]);
 /* Whether no quad at v gets worse than min(quality, what it is now), and none turns, were v at x.

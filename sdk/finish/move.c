@@ -52,6 +52,10 @@ static double side(const qc__relaxation *r, int32_t f, int k, const double *x) {
     return scale > 0 ? qc__dot3(area, normal) / scale : 0;
 }
 
+bool qc__quad_turned(const qc__relaxation *r, int32_t f, int k, const double *x) {
+    return side(r, f, k, x) < turned;
+}
+
 bool qc__ring_turns(const qc__relaxation *r, int32_t v, const double x[3]) {
     const double *now = r->position + 3 * (int64_t)v;
     for (int32_t i = r->around.face_start[v]; i < r->around.face_start[v + 1]; i++) {

@@ -1,12 +1,12 @@
-/* Quads which improve.c leaves bad: the vertices of a patch about each move together (descend.c).
- * A patch keeps its new places where its bad quads get better, none gets worse than the worst was,
- * and the largest distance between quads and surface does not grow. Where it does not, wider ones
- * are tried. */
+/* Quads which improve.c leaves bad: the vertices of a patch about each move together (descend.c),
+ * from where they are, or else from places between their neighbours. A patch keeps its new places
+ * where its bad quads get better, none gets worse than the worst was, and the largest distance
+ * between quads and surface does not grow. Where it does not, wider ones are tried. */
 #include <string.h>
 
 #include "sdk/finish/internal.h"
 
-enum { MOST_RINGS = 4 };
+enum { MOST_RINGS = 4, SMOOTH_ROUNDS = 10 };
 /* Times the quality wanted. */
 static const double bad_part = 0.3;
 
@@ -24,14 +24,16 @@ typedef struct patch {
 } patch;
 
 typedef struct score {
-    double least, lack; /* worst quality; sum of squares of what bad quads lack */
+    double least, lack; /* worst quality, -1 for what faces away; squares of what bad quads lack */
     int32_t turned;
 } score;
 
 static score rate(const patch *p) {
     score s = {1, 0, 0};
     for (int32_t i = 0; i < p->n_quads; i++) {
-        const double q = qc__quad_quality(p->r, p->quad[i]), lack = fmax(p->bad - q, 0);
+        const int32_t f = p->quad[i], v = p->r->quads->face_vertex[4 * (int64_t)f];
+        const bool away = qc__quad_turned(p->r, f, 0, p->r->position + 3 * (int64_t)v);
+        const double q = away ? -1 : qc__quad_quality(p->r, f), lack = fmax(p->bad - q, 0);
         s.least = fmin(s.least, q);
         s.lack += lack * lack;
         s.turned += q <= 0;
@@ -106,16 +108,51 @@ static bool is_near(const patch *p) {
     return true;
 }
 
-static void mend(patch *p, int32_t seed, int32_t rings) {
-    grow(p, seed, rings);
-    remember(p);
+/* The mean of the vertices joined to v by edges. */
+static void mean_around(const qc__relaxation *r, int32_t v, double x[3]) {
+    const qc__neighbours *a = &r->around;
+    const int32_t begin = a->face_start[v], end = a->face_start[v + 1];
+    x[0] = x[1] = x[2] = 0;
+    for (int32_t i = begin; i < end; i++)
+        for (int side = 1; side <= 3; side += 2) {
+            const int32_t w = r->quads->face_vertex[(a->face[i] & ~3) + ((a->face[i] + side) & 3)];
+            for (int k = 0; k < 3; k++)
+                x[k] += 0.5 * r->position[3 * (int64_t)w + k] / (end - begin);
+        }
+}
+
+/* Another start: places between the neighbours, whatever becomes of the quads. */
+static void smooth(patch *p) {
+    qc__relaxation *r = p->r;
+    for (int round = 0; round < SMOOTH_ROUNDS; round++)
+        for (int32_t i = 0; i < p->n_vertices; i++) {
+            const int32_t v = p->vertex[i];
+            double d[3];
+            qc__spot spot;
+            mean_around(r, v, d);
+            for (int k = 0; k < 3; k++) d[k] -= r->position[3 * (int64_t)v + k];
+            if (qc__step(r, v, d, &spot)) qc__place(r, v, &spot);
+        }
+}
+
+/* Moves the vertices of the patch; true when that made it better. */
+static bool descend(patch *p, bool angles, bool smoothed) {
     const score before = rate(p);
-    qc__quads_descend(p->r, p->n_vertices, p->vertex, p->step);
+    if (smoothed) smooth(p);
+    qc__quads_descend(p->r, angles, p->n_vertices, p->vertex, p->step);
     const score after = rate(p);
     if (after.least >= before.least && after.lack < before.lack && after.turned <= before.turned &&
         is_near(p))
-        return;
+        return true;
     for (int32_t i = 0; i < p->n_vertices; i++) qc__place(p->r, p->vertex[i], &p->before[i]);
+    return false;
+}
+
+static void mend(patch *p, int32_t seed, int32_t rings) {
+    grow(p, seed, rings);
+    remember(p);
+    for (int i = 0; i < 4; i++)
+        if (descend(p, i >= 2, i & 1)) return;
 }
 
 static void sort_nearest(patch *p, const int32_t *nearest) {

@@ -1,5 +1,5 @@
-/* Runs the default pipeline up to the extraction, before anything is moved, and sees its features,
- * its quads and what it warns of. */
+/* Runs the default pipeline up to the extraction, before anything is moved, or to a later step, and
+ * sees its features, its quads and what it warns of. */
 #ifndef QC_TESTS_KEPT_H
 #define QC_TESTS_KEPT_H
 
@@ -65,10 +65,15 @@ static inline qc_ctx *begin(int refusals) {
     return ctx;
 }
 
-static inline void end(qc_ctx *ctx, qc_polygon_mesh *soup) {
+static inline void forget(void) {
     qc_object_release(run_seen.first);
     qc_object_release(run_seen.last);
     qc_object_release(run_seen.quads);
+    run_seen = (seen){0};
+}
+
+static inline void end(qc_ctx *ctx, qc_polygon_mesh *soup) {
+    forget();
     qc_object_release(soup);
     qc_ctx_free(ctx);
 }
@@ -82,9 +87,9 @@ static inline uint32_t insert_look(qc_pipeline *pipeline, const char *name, cons
     return at + 1;
 }
 
-/* Up to the extraction: nothing is moved after it. */
-static inline void remesh(qc_ctx *ctx, const char *name, const qc_polygon_mesh *soup,
-                          double quads) {
+/* Up to the step of a stage. */
+static inline void remesh_to(qc_ctx *ctx, const char *name, const qc_polygon_mesh *soup,
+                             double quads, const char *stage) {
     qc_default_pipeline_options options = QC_DEFAULT_PIPELINE_OPTIONS_INIT;
     qc_registry *registry = NULL;
     qc_pipeline *pipeline = NULL;
@@ -95,7 +100,7 @@ static inline void remesh(qc_ctx *ctx, const char *name, const qc_polygon_mesh *
     assert_int_equal(qc_default_pipeline(ctx, registry, &options, &pipeline), QC_OK);
     insert_look(pipeline, "first", "qc.features");
     assert_int_equal(qc_pipeline_wire(pipeline, "first", "quads", ""), QC_OK);
-    const uint32_t at = insert_look(pipeline, "last", "qc.extract");
+    const uint32_t at = insert_look(pipeline, "last", stage);
     while (qc_pipeline_count(pipeline) > at + 1)
         assert_int_equal(qc_pipeline_remove(pipeline, at + 1), QC_OK);
     if (qc_remesh(ctx, pipeline, soup, NULL, &result) != QC_OK)
@@ -104,6 +109,12 @@ static inline void remesh(qc_ctx *ctx, const char *name, const qc_polygon_mesh *
     qc_remesh_result_clear(&result);
     qc_pipeline_free(pipeline);
     qc_registry_free(registry);
+}
+
+/* Up to the extraction: nothing is moved after it. */
+static inline void remesh(qc_ctx *ctx, const char *name, const qc_polygon_mesh *soup,
+                          double quads) {
+    remesh_to(ctx, name, soup, quads, "qc.extract");
 }
 
 static inline cover check_cover(const char *name, const uint8_t *edge, const int32_t *line,
