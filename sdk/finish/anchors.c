@@ -103,28 +103,31 @@ static double ahead(const qc__curves *c, const hit *a, const hit *b) {
     return c->closed[a->curve] ? d - length * floor(d / length + 0.5) : d;
 }
 
-/* Counts the edge from v to w when it is along the curve of v, which the length of the piece
- * between its ends tells: n[2 v] of them run forward, n[2 v + 1] backward. */
-static void count_edge(const qc__relaxation *r, const hit *at, int32_t v, int32_t w, uint8_t *n) {
+/* Counts the edge from v to w when it is along the curve of v: n[2 v] of them run forward, n[2 v +
+ * 1] backward. known: the quads tell that it is on a feature, which else the length of the piece
+ * between its ends does. One on a feature which leads round a corner to another curve counts as
+ * two: then v stays. */
+static void count_edge(const qc__relaxation *r, const hit *at, int32_t v, int32_t w, bool known,
+                       uint8_t *n) {
     if (at[v].curve < 0) return;
     const double chord =
         sqrt(distance2(r->position + 3 * (int64_t)v, r->position + 3 * (int64_t)w));
     const double d = ahead(&r->curves, &at[v], &at[w]);
-    if (fabs(d) <= CHORD * chord && n[2 * v + (d < 0)] < 2) n[2 * v + (d < 0)]++;
-}
-
-/* A line at v. As the curve of v goes on in two directions so do two lines, whatever curves they
- * come to behind a corner between two vertices of the quads. */
-static void count_line(const hit *at, int32_t v, uint8_t *n) {
-    const int side = n[2 * v] > 0;
-    if (at[v].curve >= 0 && n[2 * v + side] < 2) n[2 * v + side]++;
+    if (known && isinf(d))
+        n[2 * v] = 2;
+    else if ((known || fabs(d) <= CHORD * chord) && n[2 * v + (d < 0)] < 2)
+        n[2 * v + (d < 0)]++;
 }
 
 static void count_edges(const qc__relaxation *r, const hit *at, uint8_t *n) {
     const qc_polygon_mesh *q = r->quads;
-    for (int64_t i = 0; i < 2 * (int64_t)q->n_lines; i++) count_line(at, q->line[i], n);
+    for (int32_t i = 0; i < q->n_lines; i++) {
+        const int32_t *end = q->line + 2 * (int64_t)i;
+        count_edge(r, at, end[0], end[1], true, n);
+        count_edge(r, at, end[1], end[0], true, n);
+    }
     for (int32_t c = 0; q->n_lines == 0 && c < q->n_corners; c++)
-        count_edge(r, at, q->face_vertex[c], q->face_vertex[(c & ~3) + ((c + 1) & 3)], n);
+        count_edge(r, at, q->face_vertex[c], q->face_vertex[(c & ~3) + ((c + 1) & 3)], false, n);
 }
 
 /* n: edges along the curve, forward and backward. */
