@@ -24,7 +24,8 @@ typedef struct patch {
 } patch;
 
 typedef struct score {
-    double least, lack; /* worst quality, -1 for what faces away; squares of what bad quads lack */
+    double least, lack; /* worst quality; sum of squares of what bad quads lack, those which
+                           face away counting as -1 */
     int32_t turned;
 } score;
 
@@ -33,8 +34,9 @@ static score rate(const patch *p) {
     for (int32_t i = 0; i < p->n_quads; i++) {
         const int32_t f = p->quad[i], v = p->r->quads->face_vertex[4 * (int64_t)f];
         const bool away = qc__quad_turned(p->r, f, 0, p->r->position + 3 * (int64_t)v);
-        const double q = away ? -1 : qc__quad_quality(p->r, f), lack = fmax(p->bad - q, 0);
-        s.least = fmin(s.least, q);
+        const double own = qc__quad_quality(p->r, f), q = away ? -1 : own;
+        const double lack = fmax(p->bad - q, 0);
+        s.least = fmin(s.least, own);
         s.lack += lack * lack;
         s.turned += q <= 0;
     }
