@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sdk/map/periods/room.h"
 #include "sdk/remesh/internal.h"
 
 /* Which hard features an attempt keeps. */
@@ -36,12 +35,12 @@ typedef struct climb {
     qc_pipeline *pipeline;
     qc_bag *bag;
     uint32_t first, end;
-    int64_t round, features;      /* steps, -1 = none */
-    qc__product edges;            /* the features which the field is aligned to */
-    uint32_t optimise, optimised; /* the steps from one to before the other change branch points */
-    bool rehearsal;               /* no further than to a map with real translations */
-    bool as_smoothed;             /* without these steps */
-    uint64_t seed;                /* what the user set */
+    int64_t round, features;   /* steps, -1 = none */
+    qc__product edges;         /* the features which the field is aligned to */
+    qc__optimisation optimise; /* the steps which do so */
+    bool rehearsal;            /* no further than to a map with real translations */
+    bool as_smoothed;          /* without these steps */
+    uint64_t seed;             /* what the user set */
     double refine;
     char quantize[16];
     bool hard, was_hard; /* features, now and in the first attempt */
@@ -58,30 +57,13 @@ static const char *name_of(const climb *c, int64_t step) {
     return qc_pipeline_step_name(c->pipeline, (uint32_t)step);
 }
 
-static bool has_hard_features(const climb *c) {
-    const qc_features *features =
-        qc__product_of(c->pipeline, c->bag, (uint32_t)c->round, QC_TYPE_FEATURES).object;
-    return features && features->hard && features->n_feature_edges > 0;
-}
-
 /* Without hard features there is nothing to give up. */
 static qc_status find_features(climb *c) {
     c->edges = qc__product_of(c->pipeline, c->bag, (uint32_t)c->features + 1, QC_TYPE_FEATURES);
-    c->hard = c->edges.object && has_hard_features(c);
+    c->hard = c->edges.object && qc__has_hard_features(c->pipeline, c->bag, (uint32_t)c->round);
     c->was_hard |= c->hard;
     if (!c->hard || c->given_up.features) return QC_OK;
     return qc__concessions_create(c->ctx, c->edges.object, &c->given_up);
-}
-
-static void find_optimisation(climb *c) {
-    static const char prefix[] = "qc.optimize.";
-    c->optimise = c->optimised = 0;
-    for (uint32_t i = c->first; i < (uint32_t)c->round; i++) {
-        if (strncmp(qc_pipeline_step_stage(c->pipeline, i)->id, prefix, sizeof prefix - 1) != 0)
-            continue;
-        if (c->optimised == 0) c->optimise = i;
-        c->optimised = i + 1;
-    }
 }
 
 /* A text from the pipeline is valid until the next call. */
@@ -163,7 +145,7 @@ static bool worth_trying(const climb *c, rung next, rung before) {
     const qc__concessions *f = &c->given_up;
     if (!c->hard) return next.keep == GUIDES && !failed_early(c);
     if (next.keep == ALL) return !failed_early(c);
-    if (next.keep == AS_SMOOTHED) return c->optimised > 0 && !c->rehearsal;
+    if (next.keep == AS_SMOOTHED) return c->optimise.end > 0 && !c->rehearsal;
     if (next.keep == GUIDES) return before.keep != GUIDES || !failed_early(c);
     return f->n_gone < f->n;
 }
@@ -215,51 +197,18 @@ static qc_status run_range(const climb *c, uint32_t from, uint32_t end, double l
     return status;
 }
 
-/* Puts what goes into the optimisation in the place of what comes out. */
-static qc_status undo_optimisation(const climb *c) {
-    qc_status status = QC_OK;
-    for (uint32_t i = c->optimise; i < c->optimised; i++) {
-        const qc_stage *stage = qc_pipeline_step_stage(c->pipeline, i);
-        for (uint32_t k = 0; k < stage->n_out && status == QC_OK; k++) {
-            const qc_port *port = qc_stage_out(stage, k);
-            const qc__product before = qc__product_of(c->pipeline, c->bag, c->optimise, port->type);
-            char name[128];
-            snprintf(name, sizeof name, "%s.%s", name_of(c, i), port->name);
-            if (before.object) status = qc_bag_put(c->bag, name, before.object);
-        }
-    }
-    return status;
-}
-
-/* Steps before the optimisation, and whether hard features leave room for a map with the field as
- * it is. */
-static qc_status rehearse(const climb *c, uint32_t from) {
-    qc_status status = run_range(c, from, c->optimise, 0, 0);
-    if (status != QC_OK || !has_hard_features(c)) return status;
-    status = run_range(c, c->optimised, (uint32_t)c->round, 0, 0);
-    if (status != QC_OK) return status;
-    const qc__product map =
-        qc__product_of(c->pipeline, c->bag, (uint32_t)c->round, QC_TYPE_SEAMLESS_MAP);
-    if (!map.object) return QC_OK;
-    const qc__range outer = qc__range_begin(c->ctx, name_of(c, c->round), 0, 0);
-    const qc__time time = qc__time_begin_step(c->ctx);
-    status = qc__map_has_room(c->ctx, map.object);
-    qc__time_end_step(c->ctx, time);
-    qc__range_end(c->ctx, outer);
-    return status;
-}
-
 /* Steps from `from` on, apart up to the rounding, so that what they make is there for the next
  * attempt; [lo, 1] of the progress. */
 static qc_status run_from(const climb *c, uint32_t from, double lo) {
     const uint32_t round = (uint32_t)c->round;
     const double middle = lo + (1 - lo) * (double)(round - from) / (c->end - from);
     qc_status status = QC_OK;
-    if (c->rehearsal) return rehearse(c, from);
-    if (c->as_smoothed && from < c->optimised) {
-        status = run_range(c, from, c->optimise, lo, middle);
-        if (status == QC_OK) status = undo_optimisation(c);
-        from = c->optimised;
+    if (c->rehearsal)
+        return qc__optimisation_rehearse(c->ctx, c->pipeline, c->bag, c->optimise, from, round);
+    if (c->as_smoothed && from < c->optimise.end) {
+        status = run_range(c, from, c->optimise.first, lo, middle);
+        if (status == QC_OK) status = qc__optimisation_undo(c->pipeline, c->bag, c->optimise);
+        from = c->optimise.end;
     }
     if (status == QC_OK) status = run_range(c, from, round, lo, middle);
     return status == QC_OK ? run_range(c, round, c->end, middle, 1) : status;
@@ -275,7 +224,7 @@ static qc_status run_rung(climb *c, rung before, rung r) {
     /* with other features the field changes as well */
     const int64_t from = soft                    ? c->features
                          : fewer                 ? c->edges.step + 1
-                         : r.keep == AS_SMOOTHED ? c->optimise
+                         : r.keep == AS_SMOOTHED ? c->optimise.first
                                                  : c->round;
     return status == QC_OK ? run_from(c, (uint32_t)from, 1) : status;
 }
@@ -325,9 +274,9 @@ qc_status qc__run_with_attempts(qc_ctx *ctx, qc_pipeline *pipeline, uint32_t fir
                .round = find_step(pipeline, first, "qc.round"),
                .features = find_step(pipeline, first, "qc.features")};
     if (c.round < 0) return qc_pipeline_run_range(pipeline, first, c.end, bag);
-    find_optimisation(&c);
-    qc_status status = c.optimised > 0 ? prepare_optimisation(&c) : QC_OK;
-    if (status == QC_OK) status = climb_up(&c, c.optimised > 0 ? c.optimise : first);
+    c.optimise = qc__optimisation_find(pipeline, first, (uint32_t)c.round);
+    qc_status status = c.optimise.end > 0 ? prepare_optimisation(&c) : QC_OK;
+    if (status == QC_OK) status = climb_up(&c, c.optimise.end > 0 ? c.optimise.first : first);
     qc__concessions_clear(&c.given_up);
     return status;
 }

@@ -74,6 +74,20 @@ typedef struct qc__product {
 } qc__product;
 qc__product qc__product_of(const qc_pipeline *pipeline, const qc_bag *bag, uint32_t end,
                            const char *type);
+/* Whether the last features before `end` are hard, and there are any. */
+bool qc__has_hard_features(const qc_pipeline *pipeline, const qc_bag *bag, uint32_t end);
+
+/* The steps first .. end - 1 change the branch points; end = 0: there are none. */
+typedef struct qc__optimisation {
+    uint32_t first, end;
+} qc__optimisation;
+qc__optimisation qc__optimisation_find(const qc_pipeline *pipeline, uint32_t first, uint32_t end);
+/* Puts what goes into these steps in the place of what comes out. */
+qc_status qc__optimisation_undo(const qc_pipeline *pipeline, qc_bag *bag, qc__optimisation o);
+/* Runs from `from` to before these steps; then, of hard features, whether they leave room for a
+ * map with the field as it is. */
+qc_status qc__optimisation_rehearse(qc_ctx *ctx, qc_pipeline *pipeline, qc_bag *bag,
+                                    qc__optimisation o, uint32_t from, uint32_t round);
 
 /* Fails where the quads of a component are not a manifold of quads with the topology of its mesh.
  */

@@ -19,3 +19,8 @@ qc__product qc__product_of(const qc_pipeline *pipeline, const qc_bag *bag, uint3
     }
     return p;
 }
+
+bool qc__has_hard_features(const qc_pipeline *pipeline, const qc_bag *bag, uint32_t end) {
+    const qc_features *features = qc__product_of(pipeline, bag, end, QC_TYPE_FEATURES).object;
+    return features && features->hard && features->n_feature_edges > 0;
+}
