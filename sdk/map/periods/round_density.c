@@ -66,7 +66,6 @@ static bool is_hopeless(const qc__rounding *r) {
 
 /* Whether untangling could be in vain: features leave a fold-over little room. */
 static bool needs_quantization(const qc__rounding *r) {
-    if (r->options.trial) return false;
     if (r->best_collisions > 0 || r->best_wrong > 0) return true;
     return r->seams->n_levels > 0 && qc__round_folds(r);
 }
@@ -95,12 +94,11 @@ static qc_status refuse_collisions(const qc__rounding *r) {
  * sqrt(2), up to 8 times as many; with hard features twice as many. */
 qc_status qc__round_meet(qc__rounding *r) {
     const double asked = r->options.refine;
-    const bool always = r->options.quantize == QC_QUANTIZE_ALWAYS && !r->options.trial;
+    const bool may_quantize = !r->options.trial && qc__round_can_quantize(r);
+    const bool always = may_quantize && r->options.quantize == QC_QUANTIZE_ALWAYS;
     bool quantized = false;
-    qc_status status = always ? qc__round_quantized(r, &quantized) : QC_OK;
-    if (status != QC_OK || quantized) return status;
-    status = meet_density(r);
-    if (status == QC_OK && !always && qc__round_can_quantize(r) && needs_quantization(r)) {
+    qc_status status = always ? QC_OK : meet_density(r);
+    if (status == QC_OK && (always || (may_quantize && needs_quantization(r)))) {
         status = qc__round_quantized(r, &quantized);
         if (status != QC_OK || quantized) return status;
         r->options.quantize = QC_QUANTIZE_NEVER;

@@ -30,7 +30,8 @@ typedef struct qc__flips {
 qc_status qc__coarse_flip(qc_ctx *ctx, qc__coarse *coarse, const qc__flips *flips, int32_t n,
                           int32_t *triangle, qc__point *place, int8_t *turn);
 
-/* Integer vectors x (3 n_triangles, parameter units) near scale 2^-bits vector: opposite halfedges
+/* Integer vectors x (3 n_triangles, parameter units) of the complex after the flips, which the
+ * caller frees and makes with qc__coarse_flip, near scale 2^-bits vector: opposite halfedges
  * are negatives up to the rotation, those of a triangle add up to zero and span a positive area,
  * those of features run along their axis. quads > 0: then the scale is changed until they span
  * about so many units, which is the number of quads; where so few leave no such vectors it is the
