@@ -11,7 +11,8 @@ mkdir -p "$figures"
 for part in "$@"; do
     echo "results: $part" >&2
     case $part in
-    acceptance) set -- python3 "$here/../acceptance/acceptance.py" --program "$bin/quadcover" --markdown ;;
+    acceptance) set -- python3 "$here/../acceptance/acceptance.py" --program "$bin/quadcover" --modes fast,best \
+        --quads 300,1000,3000,10000,50000 --limit 180 --markdown ;;
     scale) set -- python3 "$here/../scale/scale.py" --program "$bin/quadcover" ;;
     corpus) set -- python3 "$here/../acceptance/acceptance.py" --program "$bin/quadcover" --corpus "$bin/../corpus" \
         --results "$bin/../corpus/results.jsonl" --modes fast --quads 1000 --memory 4096 --markdown ;;
