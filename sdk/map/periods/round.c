@@ -86,16 +86,19 @@ static qc_status refuse_impossible(const qc__rounding *r) {
                     qc__vertex_name(mesh, cone[1], name[1]));
 }
 
-/* At an inner vertex of index 3/4 one quad meets, two of whose sides are one edge. */
+/* At an inner vertex of index 3/4 one quad meets, two of whose sides are one edge. Next to a vertex
+ * of negative index a fold may still hide it; but with hard features fewer of them help. */
 static qc_status refuse_glued_quads(const qc__rounding *r) {
-    const int32_t *index4 = r->seamless->matching->index4;
-    if (r->options.lattice != QC_LATTICE_QUADS || r->options.trial) return QC_OK;
+    const qc_matching *matching = r->seamless->matching;
+    if (r->options.lattice != QC_LATTICE_QUADS || r->options.trial || !matching->axis) return QC_OK;
     for (int32_t v = 0; v < r->mesh->n_vertices; v++)
-        if (index4[v] >= 3 && !qc_vertex_on_boundary(r->mesh, v))
-            return qc__fail(r->ctx, QC_ERR_FAILED, v,
-                            "vertex %d has index %d/4, where a quad would be glued to itself; "
-                            "smooth the field or drop features near it",
-                            (int)v, (int)index4[v]);
+        if (matching->index4[v] == 3 && !qc_vertex_on_boundary(r->mesh, v)) {
+            char name[QC__ELEMENT_NAME];
+            return qc__fail(
+                r->ctx, QC_ERR_FAILED, v,
+                "%s has index 3/4, where a quad would be glued to itself; drop features near it",
+                qc__vertex_name(r->mesh, v, name));
+        }
     return QC_OK;
 }
 

@@ -248,9 +248,44 @@ static void failing_allocations_leave_nothing(void **state) {
     qc_ctx_free(ctx);
 }
 
+/* The plate with a vertex of index 3/4, where one quad meets, two of whose sides are one edge. */
+static setting *glued(qc_ctx *ctx, int32_t *vertex) {
+    setting *plain = aligned_setting(ctx, &CASES[0], 400);
+    qc_mesh *mesh = qc_object_retain(plain->mesh);
+    const int32_t n = CASES[0].resolution, v = n / 2 * (n + 1) + n / 2,
+                  first = mesh->vertex_corner[v];
+    int8_t *m = ARRAY(int8_t, mesh->n_edges);
+    qc_matching *matching = NULL;
+    memcpy(m, plain->matching->m, (size_t)mesh->n_edges);
+    for (int32_t i = 0, c = first; i < 3; i++, c = qc_corner_ccw(mesh, c)) {
+        const int32_t h = qc_prev(c), e = mesh->halfedge_edge[h];
+        m[e] = (int8_t)(m[e] + (mesh->edge_halfedge[2 * e] == h ? 1 : -1));
+    }
+    must(ctx, qc_matching_create(ctx, plain->matching->field, m, &matching));
+    free(m);
+    setting_free(plain);
+    *vertex = v;
+    return setting_of(ctx, mesh, matching, 400);
+}
+static void test_glued(void **state) {
+    (void)state;
+    qc_ctx *ctx = context(1);
+    qc_round_options options = QC_ROUND_OPTIONS_INIT;
+    qc_corner_map *map = NULL;
+    int32_t v;
+    setting *s = glued(ctx, &v);
+    assert_int_equal(s->matching->index4[v], 3);
+    assert_int_equal(qc_map_round(ctx, s->map, &options, &map), QC_ERR_FAILED);
+    assert_null(map);
+    assert_int_equal(qc_ctx_error(ctx)->where, v);
+    setting_free(s);
+    qc_ctx_free(ctx);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_count),
+        cmocka_unit_test(test_glued),
         cmocka_unit_test(test_integers),
         cmocka_unit_test(test_rounding),
         cmocka_unit_test(test_energies),

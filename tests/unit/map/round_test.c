@@ -284,27 +284,6 @@ static void edge_lengths_are_literal(void **state) {
     qc_ctx_free(ctx);
 }
 
-/* One quad meets at a vertex of index 3/4, two of whose sides are one edge. */
-static void glued_quads_are_refused(void **state) {
-    (void)state;
-    static const surface_case turned = {"sphere", 200, 0, 0.05, ANY_TURNS};
-    qc_ctx *ctx = context(1);
-    setting *s = setting_create(ctx, &turned, 700);
-    qc_round_options options = QC_ROUND_OPTIONS_INIT;
-    qc_corner_map *map = NULL;
-    int32_t first = 0;
-    while (first < s->mesh->n_vertices && s->matching->index4[first] < 3) first++;
-    assert_true(first < s->mesh->n_vertices);
-    assert_int_equal(qc_map_round(ctx, s->map, &options, &map), QC_ERR_FAILED);
-    assert_null(map);
-    assert_int_equal(qc_ctx_error(ctx)->where, first);
-    options.lattice = QC_LATTICE_INTEGER;
-    must(ctx, qc_map_round(ctx, s->map, &options, &map));
-    qc_object_release(map);
-    setting_free(s);
-    qc_ctx_free(ctx);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(results_are_integer_seamless),
@@ -315,7 +294,6 @@ int main(void) {
         cmocka_unit_test(integers_do_not_depend_on_scale),
         cmocka_unit_test(components_are_rounded_apart),
         cmocka_unit_test(edge_lengths_are_literal),
-        cmocka_unit_test(glued_quads_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
