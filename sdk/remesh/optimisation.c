@@ -2,7 +2,7 @@
  * as it was before them. */
 #include <string.h>
 
-#include "sdk/map/periods/room.h"
+#include "sdk/map/round/room.h"
 #include "sdk/remesh/internal.h"
 
 qc__optimisation qc__optimisation_find(const qc_pipeline *pipeline, uint32_t first, uint32_t end) {

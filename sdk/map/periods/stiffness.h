@@ -8,7 +8,7 @@
 #ifndef QC_MAP_STIFFNESS_H
 #define QC_MAP_STIFFNESS_H
 
-#include "sdk/map/periods/seams.h"
+#include "sdk/map/seams/seams.h"
 
 typedef struct qc__map_stiffness {
     const qc__seams *seams;  /* borrowed, as are ...  */

@@ -6,7 +6,7 @@
 #ifndef QC_MAP_UNFOLD_H
 #define QC_MAP_UNFOLD_H
 
-#include "sdk/map/periods/features.h"
+#include "sdk/map/seams/features.h"
 #include "sdk/map/periods/period_matrix.h"
 
 typedef struct qc__unfolding {

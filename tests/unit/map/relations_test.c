@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "sdk/map/periods/relations.h"
+#include "sdk/map/seams/relations.h"
 #include "tests/unit/mesh/failing_allocator.h"
 
 enum { SYMBOLS = 9, RELATIONS = 4, BOX = 3 };

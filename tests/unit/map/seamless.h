@@ -14,7 +14,7 @@
 #include <qc/shape.h>
 
 #include "sdk/map/periods/period_matrix.h"
-#include "sdk/map/periods/separation.h"
+#include "sdk/map/round/separation.h"
 
 typedef double _Complex complex_t;
 
