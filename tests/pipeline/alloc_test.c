@@ -7,7 +7,7 @@
 #include <cmocka.h>
 #include <qc/qc.h>
 #include <stdlib.h>
-#include "tests/pipeline/counting.h"
+#include "tests/counting.h"
 
 static void out_of_memory_anywhere_is_an_error(void **state) {
     (void)state;

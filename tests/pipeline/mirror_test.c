@@ -8,7 +8,7 @@
 #include <qc/qc.h>
 #include <stdlib.h>
 #include <string.h>
-#include "tests/pipeline/counting.h"
+#include "tests/counting.h"
 
 /* Moves the vertices on x = 0 off it. */
 static qc_status shift(const qc_run *run, const void *raw) {

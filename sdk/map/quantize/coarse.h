@@ -20,6 +20,9 @@ typedef struct qc__coarse {
     int32_t *origin;   /* vertex of the mesh at its start                                         */
 } qc__coarse;
 
+/* One more than the largest origin. */
+int32_t qc__coarse_origins(const qc__coarse *coarse);
+
 /* Flips of a complex, one after the other: qc__coarse_flip. */
 typedef struct qc__flips {
     int32_t *halfedge;

@@ -2,7 +2,7 @@
  * coarse.h). */
 #include "sdk/map/quantize/triangulation.h"
 
-static int32_t count_origins(const qc__coarse *c) {
+int32_t qc__coarse_origins(const qc__coarse *c) {
     int32_t n = 0;
     for (int32_t h = 0; h < 3 * c->n_triangles; h++)
         if (c->origin[h] >= n) n = c->origin[h] + 1;
@@ -18,7 +18,7 @@ qc_status qc__coarse_flip(qc_ctx *ctx, qc__coarse *coarse, const qc__flips *flip
                            .origin = coarse->origin,
                            .rotation = coarse->rotation,
                            .axis = coarse->axis,
-                           .spoke = QC__ZERO(ctx, int32_t, count_origins(coarse)),
+                           .spoke = QC__ZERO(ctx, int32_t, qc__coarse_origins(coarse)),
                            .first_marker = QC__NEW(ctx, int32_t, coarse->n_triangles),
                            .next_marker = QC__NEW(ctx, int32_t, n),
                            .place = place,

@@ -97,7 +97,7 @@ static void keep_best(qc__integers *q, double quads, double *best) {
 /* Where few vectors jump together, from a scale to the next: starts anew at scales about this one.
  */
 static qc_status scan_scales(qc__integers *q, double scale, double quads, double *best) {
-    for (int32_t k = 0; k<SCANS && * best> fair_miss; k++) {
+    for (int32_t k = 0; k < SCANS && fair_miss < *best; k++) {
         bool closed;
         qc__integers_aim(q, scale * (1 + scan_step * (k / 2 + 1) * (k % 2 ? -1 : 1)));
         qc_status status = qc__integers_start(q, &closed);
@@ -138,12 +138,6 @@ static qc_status search(qc__integers *q, double scale, double quads) {
     return status == QC_OK && quads > 0 ? meet_quads(q, scale, quads, at_once) : status;
 }
 
-static void free_triangulation(qc__triangulation *T) {
-    void *const blocks[] = {T->vector,   T->image, T->twin,  T->origin,
-                            T->rotation, T->axis,  T->spoke, T->first_marker};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
-}
-
 /* Room for the complex and its integer vectors. */
 static bool allocate_triangulation(qc_ctx *ctx, int32_t n_triangles, int32_t n_origins,
                                    qc__triangulation *T) {
@@ -166,10 +160,8 @@ static bool allocate_triangulation(qc_ctx *ctx, int32_t n_triangles, int32_t n_o
 
 static qc_status allocate(qc__integers *q, const qc__coarse *c) {
     const int32_t n = 3 * c->n_triangles;
-    for (int32_t h = 0; h < n; h++) {
-        if (c->origin[h] >= q->n_origins) q->n_origins = c->origin[h] + 1;
-        q->has_boundary |= c->twin[h] < 0;
-    }
+    q->n_origins = qc__coarse_origins(c);
+    for (int32_t h = 0; h < n; h++) q->has_boundary |= c->twin[h] < 0;
     q->wanted = QC__NEW(q->ctx, double, 2 * (int64_t)n);
     q->weight = QC__NEW(q->ctx, double, n);
     q->turns = QC__ZERO(q->ctx, int32_t, q->n_origins);
@@ -206,8 +198,8 @@ qc_status qc__coarse_integers(qc_ctx *ctx, const qc__coarse *coarse, double scal
         q.flips.halfedge = NULL;
     }
     qc__heap_free(&q.heap);
-    free_triangulation(&q.T);
-    free_triangulation(&q.best);
+    qc__triangulation_clear(&q.T);
+    qc__triangulation_clear(&q.best);
     void *const blocks[] = {q.wanted, q.weight,  q.turns, q.expected,      q.distance,
                             q.parent, q.touched, q.path,  q.flips.halfedge};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);

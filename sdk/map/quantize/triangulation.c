@@ -3,11 +3,15 @@
 
 #include <string.h>
 
-void qc__triangulation_free(qc__triangulation *T) {
-    if (!T) return;
-    void *const blocks[] = {T->vector, T->twin,  T->origin,       T->rotation,    T->axis, T->dead,
-                            T->spoke,  T->place, T->first_marker, T->next_marker, T->turn};
+void qc__triangulation_clear(qc__triangulation *T) {
+    void *const blocks[] = {T->vector,   T->image,        T->twin,        T->origin,
+                            T->rotation, T->axis,         T->dead,        T->spoke,
+                            T->place,    T->first_marker, T->next_marker, T->turn};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) qc__free(blocks[i]);
+}
+
+void qc__triangulation_free(qc__triangulation *T) {
+    if (T) qc__triangulation_clear(T);
     qc__free(T);
 }
 

@@ -31,6 +31,8 @@ typedef struct qc__triangulation {
 
 /* The faces of an exact map, in units of 2^-(bits + 2). */
 qc_status qc__triangulation_create(qc_ctx *ctx, const qc__exact_map *map, qc__triangulation **out);
+/* The blocks alone; those which are NULL are skipped. */
+void qc__triangulation_clear(qc__triangulation *T);
 void qc__triangulation_free(qc__triangulation *T);
 
 /* The origin of halfedge h from that of the first halfedge of its triangle. */

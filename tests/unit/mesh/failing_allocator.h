@@ -5,44 +5,26 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
 
 #include <cmocka.h>
 #include <qc/base.h>
 
-typedef struct counter {
-    long calls, fail_at, blocks;
-} counter;
-
-static inline void *resize(void *user, void *p, size_t old_size, size_t new_size) {
-    counter *c = user;
-    (void)old_size;
-    if (new_size == 0) {
-        c->blocks -= p != NULL;
-        free(p);
-        return NULL;
-    }
-    if (c->calls++ == c->fail_at) return NULL;
-    void *q = realloc(p, new_size);
-    c->blocks += q && !p;
-    return q;
-}
+#include "tests/counting.h"
 
 /* Runs work with the first, second, ... allocation failing until it succeeds. */
 static inline void fail_every_allocation(qc_status (*work)(qc_ctx *, const void *),
                                          const void *data) {
     qc_status status = QC_ERR_NOMEM;
-    for (long fail_at = 0; status != QC_OK; fail_at++) {
+    for (int64_t fail_at = 0; status != QC_OK; fail_at++) {
         counter c = {0, -1, 0};
         qc_ctx_options options = QC_CTX_OPTIONS_INIT;
         options.threads = 1;
-        options.resize = resize;
+        options.resize = counting_resize;
         options.user = &c;
         qc_ctx *ctx = NULL;
         assert_int_equal(qc_ctx_create(&options, &ctx), QC_OK);
-        long blocks = c.blocks;
-        c.fail_at = c.calls + fail_at;
+        const int64_t blocks = c.blocks;
+        c.fail_at = c.made + fail_at;
         status = work(ctx, data);
         assert_true(status == QC_OK || status == QC_ERR_NOMEM);
         assert_int_equal(qc_ctx_error(ctx)->status, status);

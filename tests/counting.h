@@ -1,6 +1,6 @@
 /* An allocator which counts blocks and fails once, at a given allocation. */
-#ifndef QC_TESTS_PIPELINE_COUNTING_H
-#define QC_TESTS_PIPELINE_COUNTING_H
+#ifndef QC_TESTS_COUNTING_H
+#define QC_TESTS_COUNTING_H
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@ typedef struct counter {
     int64_t made, fail_at, blocks; /* fail_at < 0: none fails */
 } counter;
 
-static void *counting_resize(void *user, void *p, size_t old_size, size_t new_size) {
+static inline void *counting_resize(void *user, void *p, size_t old_size, size_t new_size) {
     counter *c = user;
     (void)old_size;
     if (new_size == 0) {
@@ -18,8 +18,9 @@ static void *counting_resize(void *user, void *p, size_t old_size, size_t new_si
         return NULL;
     }
     if (c->made++ == c->fail_at) return NULL;
-    c->blocks += p == NULL;
-    return realloc(p, new_size);
+    void *q = realloc(p, new_size);
+    c->blocks += q && !p;
+    return q;
 }
 
 #endif
